@@ -1,0 +1,63 @@
+//! What every acceleration structure answers.
+
+use photinus_geometry::{Hit, Ray};
+use photinus_profile::{IntersectCounters, TraversalCounters};
+use serde::Serialize;
+use std::ops::AddAssign;
+
+/// Work done for rays: tests and traversal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RayCounters {
+    /// Ray-primitive tests.
+    pub intersect: IntersectCounters,
+    /// Nodes and leaves.
+    pub traversal: TraversalCounters,
+}
+
+impl AddAssign for RayCounters {
+    fn add_assign(&mut self, other: Self) {
+        self.intersect += other.intersect;
+        self.traversal += other.traversal;
+    }
+}
+
+/// A finished structure, described by walking it once.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StructureSummary {
+    /// Member name.
+    pub name: &'static str,
+    /// Levels below the root.
+    pub depth: u32,
+    /// Interior nodes.
+    pub nodes: u64,
+    /// Leaves that hold primitives.
+    pub leaves: u64,
+    /// Leaves without any.
+    pub empty_leaves: u64,
+    /// Primitive references in leaves, more than the primitives where leaves overlap.
+    pub references: u64,
+    /// Mean primitives in a leaf that holds any.
+    pub prims_per_leaf: f64,
+    /// Expected cost of a ray by the surface-area heuristic, with the costs used to build; 0 where it means nothing.
+    pub sah_cost: f64,
+    /// Memory of the structure, primitives it copies included.
+    pub bytes: u64,
+}
+
+/// An acceleration structure.
+pub trait Structure: Send + Sync {
+    /// The nearest hit of each ray within its interval; `hits` is as long as `rays`.
+    fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]);
+
+    /// Whether each ray hits anything within its interval; `occluded` is as long as `rays`.
+    fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]);
+
+    /// As [`Structure::closest_hit`], with the work added to `counters`: the same hits, more slowly.
+    fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters);
+
+    /// As [`Structure::any_hit`], with the work added to `counters`.
+    fn any_hit_counted(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters);
+
+    /// What was built.
+    fn summary(&self) -> StructureSummary;
+}

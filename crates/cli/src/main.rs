@@ -1,0 +1,2 @@
+//! The command `photinus`.
+fn main() {}

@@ -1,0 +1,1 @@
+//! Ray-triangle methods, one file each, over any scalar.

@@ -1,0 +1,1 @@
+//! The facade: scene, names and settings in; image, profile and queries out.

@@ -1,0 +1,28 @@
+//! A point on a surface, with all that shading needs.
+
+use photinus_geometry::{Frame, Vec2, Vec3};
+
+/// A point on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// Where, in world space.
+    pub position: Vec3,
+    /// Unit face normal on the side that the shape's normals point to.
+    pub geometric_normal: Vec3,
+    /// Frame around the unit shading normal (same side as the face normal); x along dp/du.
+    pub frame: Frame,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Change of position with u and v, not normalised, in scene units; for bump maps.
+    pub dp_du: Vec3,
+    /// See `dp_du`.
+    pub dp_dv: Vec3,
+    /// Vertex colour, linear RGB; white where the mesh has none.
+    pub color: Vec3,
+    /// Width of the pixel's footprint in texture coordinates; 0: unknown, no filtering beyond bilinear.
+    pub uv_footprint: f32,
+    /// Index of the shape.
+    pub shape: u32,
+    /// Primitive id.
+    pub prim: u32,
+}

@@ -1,0 +1,8 @@
+//! Scenes: what is in them ([`model`]), where they come from (importers, built-in scenes) and how they are written.
+//!
+//! A [`Scene`] is plain data in world space: importers resolve transforms, instances and defaults, so that a renderer
+//! reads it without knowing any file format.
+
+pub mod model;
+
+pub use model::*;
