@@ -1,5 +1,6 @@
 //! What every photon search answers.
 
+use crate::Photon;
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 
@@ -76,6 +77,10 @@ pub trait Search: Send + Sync {
         out: &mut [Gathered],
         counters: &mut SearchCounters,
     );
+
+    /// Calls `visit` with every photon that [`Search::gather`] would sum for `query` and its squared distance, in an
+    /// order that depends on nothing but the photons; for surfaces whose scattering depends on the photon's direction.
+    fn visit(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32));
 
     /// All photons within `radius` of `position` (closed), in ascending id; `found` is cleared first.
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>);
