@@ -3,6 +3,7 @@
 //! A [`Scene`] is plain data in world space: importers resolve transforms, instances and defaults, so that a renderer
 //! reads it without knowing any file format.
 
+pub mod builtin;
 pub mod load;
 pub mod model;
 
