@@ -13,6 +13,9 @@ pub struct ObjPart {
     pub material: Option<String>,
     /// Geometry as the file has it: polygons triangulated, v = 0 at the bottom, no normals where the file has none.
     pub mesh: Mesh,
+    /// For each vertex of `mesh`, the position (`v` line, from 0) that it came from: vertices that differ only in
+    /// texture coordinate share it, and smooth normals join over it.
+    pub points: Vec<u32>,
 }
 
 /// What an OBJ file holds.
