@@ -54,6 +54,7 @@ impl Add for Counted<'_> {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "counting adds one to a counter")]
 impl Sub for Counted<'_> {
     type Output = Self;
     fn sub(self, rhs: Self) -> Self {
@@ -62,6 +63,7 @@ impl Sub for Counted<'_> {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "counting adds one to a counter")]
 impl Mul for Counted<'_> {
     type Output = Self;
     fn mul(self, rhs: Self) -> Self {
@@ -70,6 +72,7 @@ impl Mul for Counted<'_> {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "counting adds one to a counter")]
 impl Div for Counted<'_> {
     type Output = Self;
     fn div(self, rhs: Self) -> Self {

@@ -1,0 +1,75 @@
+//! `unsafe` is for SIMD kernels only: each file that holds any is listed with the test that compares it with its
+//! scalar twin.
+
+use super::Finding;
+use super::rust_lines::split;
+use super::tree::Tree;
+
+/// A file that may hold `unsafe` code.
+struct Kernel {
+    path: &'static str,
+    /// File and function of the test that compares it with the scalar code.
+    twin_test: (&'static str, &'static str),
+}
+
+const KERNELS: &[Kernel] = &[];
+
+/// Checks the list against the sources, both ways.
+pub fn check(tree: &Tree) -> Vec<Finding> {
+    check_against(tree, KERNELS)
+}
+
+fn check_against(tree: &Tree, kernels: &[Kernel]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for file in tree.rust() {
+        let first = split(&file.text).iter().position(|line| has_unsafe(&line.code));
+        if let Some(line) = first
+            && !kernels.iter().any(|kernel| kernel.path == file.path)
+        {
+            findings.push(Finding::new(&file.path, line + 1, "`unsafe` in a file that is not in KERNELS"));
+        }
+    }
+    for kernel in kernels {
+        let has_any = tree.file(kernel.path).is_some_and(|file| split(&file.text).iter().any(|l| has_unsafe(&l.code)));
+        if !has_any {
+            findings.push(Finding::new(kernel.path, 0, "in KERNELS, without `unsafe` code: take it off"));
+        }
+        let (path, test) = kernel.twin_test;
+        let declared = format!("fn {test}(");
+        let exists = tree.file(path).is_some_and(|file| split(&file.text).iter().any(|l| l.code.contains(&declared)));
+        if !exists {
+            findings.push(Finding::new(kernel.path, 0, format!("its twin test {path}: {test} does not exist")));
+        }
+    }
+    findings
+}
+
+/// Whether code holds the word, as something other than a lint's name.
+fn has_unsafe(code: &str) -> bool {
+    code.match_indices("unsafe").any(|(at, word)| {
+        let part_of_name = |c: char| c.is_alphanumeric() || c == '_';
+        !code[..at].ends_with(part_of_name) && !code[at + word.len()..].starts_with(part_of_name)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KERNEL: &[Kernel] = &[Kernel { path: "k.rs", twin_test: ("t.rs", "same_bits") }];
+    const CODE: (&str, &str) = ("k.rs", "fn f() { unsafe { g() } }\n");
+    const TEST: (&str, &str) = ("t.rs", "#[test]\nfn same_bits() {}\n");
+
+    fn count(files: &[(&str, &str)], kernels: &[Kernel]) -> usize {
+        check_against(&Tree::of(files), kernels).len()
+    }
+
+    #[test]
+    fn the_list_and_the_sources_must_agree() {
+        assert_eq!(count(&[CODE, TEST], KERNEL), 0);
+        assert_eq!(count(&[CODE, TEST], &[]), 1, "unlisted");
+        assert_eq!(count(&[CODE], KERNEL), 1, "no twin test");
+        assert_eq!(count(&[("k.rs", "fn f() {}\n"), TEST], KERNEL), 1, "nothing unsafe left");
+        assert_eq!(count(&[("a.rs", "#![forbid(unsafe_code)]\n// unsafe\n")], &[]), 0, "words only");
+    }
+}
