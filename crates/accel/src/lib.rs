@@ -4,6 +4,17 @@
 //! A structure answers batches: slices of rays in, slices of hits out. Every member gives the same closest hit as
 //! `brute_force`, ties going to the lowest primitive id.
 
+pub mod bounds;
+pub mod list;
+pub mod options;
 mod structure;
+pub mod structures {
+    //! The members: one acceleration structure a file or folder.
 
+    pub mod brute_force;
+    pub mod wide_bvh;
+}
+
+pub use list::{DEFAULT_STRUCTURE, STRUCTURES, StructureInfo, build, find_structure};
+pub use options::{BuildError, BuildOptions, Kernel, SplitCandidates};
 pub use structure::{RayCounters, Structure, StructureSummary};

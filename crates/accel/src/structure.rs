@@ -1,6 +1,7 @@
 //! What every acceleration structure answers.
 
 use photinus_geometry::{Hit, Ray};
+use photinus_intersect::LeafWork;
 use photinus_profile::{IntersectCounters, TraversalCounters};
 use serde::Serialize;
 use std::ops::AddAssign;
@@ -12,6 +13,16 @@ pub struct RayCounters {
     pub intersect: IntersectCounters,
     /// Nodes and leaves.
     pub traversal: TraversalCounters,
+}
+
+impl RayCounters {
+    /// Adds the visit of a leaf of `prims` primitives.
+    pub(crate) fn add_leaf(&mut self, prims: usize, work: LeafWork) {
+        self.traversal.leaves_visited += 1;
+        self.traversal.leaf_prims += prims as u64;
+        self.intersect.tests += u64::from(work.tests);
+        self.intersect.hits += u64::from(work.hits);
+    }
 }
 
 impl AddAssign for RayCounters {

@@ -1,1 +1,21 @@
-//! Ray-triangle methods, one file each, over any scalar.
+//! Ray-triangle methods, one file each, over any scalar; the exact ray-sphere test; and the leaf testers that
+//! acceleration structures call.
+//!
+//! A method is a pair of a prepared triangle and a started ray ([`RtiMethod`]). Structures know none of them: they
+//! hold a [`LeafTester`], made from the list ([`METHODS`]) by name, and call it once a leaf.
+
+pub mod leaf_tester;
+pub mod list;
+pub mod method;
+pub mod methods {
+    //! The members: one ray-triangle method a file.
+
+    pub mod badouel;
+    pub mod moller_trumbore;
+    pub mod woop;
+}
+pub mod sphere;
+
+pub use leaf_tester::{LeafTester, LeafWork, sphere_tester};
+pub use list::{DEFAULT_METHOD, METHODS, MethodInfo, find_method};
+pub use method::{RtiMethod, TriangleHit, is_degenerate};

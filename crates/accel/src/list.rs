@@ -1,0 +1,79 @@
+//! The list of acceleration structures: command line, help, documentation and tests are made from it.
+
+use crate::options::{BuildError, BuildOptions};
+use crate::structure::Structure;
+use crate::structures::{brute_force, wide_bvh};
+use photinus_geometry::{MAX_PRIMITIVES, Primitives};
+use photinus_intersect::{LeafTester, METHODS, find_method};
+use std::sync::Arc;
+
+/// A member of the family.
+pub struct StructureInfo {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// One line for the help.
+    pub summary: &'static str,
+    /// Where it was published.
+    pub source: &'static str,
+    build: fn(Arc<Primitives>, &BuildOptions) -> Result<Box<dyn Structure>, BuildError>,
+}
+
+/// Every acceleration structure.
+pub const STRUCTURES: &[StructureInfo] = &[
+    StructureInfo {
+        name: wide_bvh::NAME,
+        summary: wide_bvh::SUMMARY,
+        source: wide_bvh::SOURCE,
+        build: wide_bvh::build,
+    },
+    StructureInfo {
+        name: brute_force::NAME,
+        summary: brute_force::SUMMARY,
+        source: brute_force::SOURCE,
+        build: brute_force::build,
+    },
+];
+
+/// The structure used where none is named.
+pub const DEFAULT_STRUCTURE: &str = wide_bvh::NAME;
+
+/// The member called `name`, underscores standing for hyphens.
+pub fn find_structure(name: &str) -> Option<&'static StructureInfo> {
+    let name = name.replace('_', "-");
+    STRUCTURES.iter().find(|s| s.name == name)
+}
+
+/// Builds the structure called `name` over `primitives`.
+///
+/// # Errors
+/// An unknown name, an option out of its range, too many primitives, or a vertex index out of range. Primitives that
+/// no ray can hit (not finite, no area, no radius) are left out without an error.
+pub fn build(
+    name: &str,
+    primitives: Arc<Primitives>,
+    options: &BuildOptions,
+) -> Result<Box<dyn Structure>, BuildError> {
+    let info = find_structure(name).ok_or_else(|| BuildError::UnknownStructure {
+        name: name.into(),
+        known: STRUCTURES.iter().map(|s| s.name).collect::<Vec<_>>().join(", "),
+    })?;
+    if primitives.len() > MAX_PRIMITIVES {
+        return Err(BuildError::TooManyPrimitives { count: primitives.len() });
+    }
+    let vertices = primitives.positions.len();
+    for (triangle, indices) in primitives.triangles.iter().enumerate() {
+        if let Some(&vertex) = indices.iter().find(|v| **v as usize >= vertices) {
+            return Err(BuildError::VertexOutOfRange { triangle, vertex, vertices });
+        }
+    }
+    (info.build)(primitives, options)
+}
+
+/// The leaf tester of the method that `options` name.
+pub(crate) fn leaf_tester(primitives: &Primitives, options: &BuildOptions) -> Result<Box<dyn LeafTester>, BuildError> {
+    let method = find_method(&options.method).ok_or_else(|| BuildError::UnknownMethod {
+        name: options.method.clone(),
+        known: METHODS.iter().map(|m| m.name).collect::<Vec<_>>().join(", "),
+    })?;
+    Ok((method.leaf_tester)(primitives))
+}

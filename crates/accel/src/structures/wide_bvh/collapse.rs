@@ -1,0 +1,216 @@
+//! From the binary tree to the wide one: which subtrees become nodes and which leaves is chosen at least cost by
+//! dynamic programming (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+//! BVHs", HPG 2017, section 3.1).
+
+use super::binary::BinaryTree;
+use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
+use photinus_geometry::Primitives;
+
+/// Cost of testing the eight boxes of a node, in units of [`BLOCK_COST`].
+const NODE_COST: f32 = 1.0;
+/// Cost of testing the eight triangles of a block.
+const BLOCK_COST: f32 = 1.0;
+/// Cost of testing one primitive by its id.
+const ID_COST: f32 = 1.0;
+
+/// What is best done with a binary subtree when it may take up so many slots of a node.
+#[derive(Clone, Copy)]
+enum Choice {
+    /// One slot: a leaf.
+    Leaf,
+    /// One slot: a node of its own.
+    Node,
+    /// So many slots for the first child, the rest for the second.
+    Split(u8),
+    /// No better than with one slot less.
+    Fewer,
+}
+
+/// Least cost with up to i + 1 slots, and how.
+struct Plan {
+    costs: [f32; WIDTH - 1],
+    choices: [Choice; WIDTH - 1],
+    /// Slots of the first child where the subtree is a node.
+    node_split: u8,
+}
+
+/// How leaves are stored.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Leaves {
+    /// Triangles in blocks, spheres by id.
+    Blocks,
+    /// Everything by id.
+    Ids,
+}
+
+/// The arrays of a wide tree.
+pub struct WideArrays {
+    /// Nodes; the root is the first.
+    pub nodes: Vec<Node>,
+    /// Triangle blocks; the first is empty.
+    pub blocks: Vec<TriangleBlock>,
+    /// Ids of leaves that are not blocks.
+    pub ids: Vec<u32>,
+}
+
+struct Collapse<'a> {
+    tree: &'a BinaryTree,
+    primitives: &'a Primitives,
+    leaves: Leaves,
+    plans: Vec<Plan>,
+    out: WideArrays,
+}
+
+/// Collapses `tree`; `None` where an array outgrows its index.
+pub fn collapse(tree: &BinaryTree, primitives: &Primitives, leaves: Leaves) -> Option<WideArrays> {
+    let out = WideArrays { nodes: vec![Node::empty()], blocks: vec![TriangleBlock::empty()], ids: Vec::new() };
+    if tree.nodes.is_empty() {
+        return Some(out);
+    }
+    let mut c = Collapse { tree, primitives, leaves, plans: Vec::with_capacity(tree.nodes.len()), out };
+    c.plan();
+    c.emit_node(0, 0);
+    let fits = [c.out.nodes.len(), c.out.blocks.len(), c.out.ids.len()].iter().all(|n| *n <= MAX_INDEX);
+    fits.then_some(c.out)
+}
+
+impl Collapse<'_> {
+    /// Whether the leaf of a subtree would be a block; the alternative is ids. Mixed subtrees are no leaf.
+    fn leaf_kind(&self, index: usize) -> Option<Leaves> {
+        let node = &self.tree.nodes[index];
+        let prims = &self.tree.prims[node.first as usize..(node.first + node.count) as usize];
+        if prims.len() > WIDTH {
+            return None;
+        }
+        let is_triangle = |id: u32| (id as usize) < self.primitives.triangle_count();
+        if self.leaves == Leaves::Ids || prims.iter().all(|p| !is_triangle(p.id)) {
+            (prims.len() <= super::layout::MAX_LEAF).then_some(Leaves::Ids)
+        } else {
+            prims.iter().all(|p| is_triangle(p.id)).then_some(Leaves::Blocks)
+        }
+    }
+
+    /// Costs bottom up: children come after their parents.
+    fn plan(&mut self) {
+        let n = self.tree.nodes.len();
+        self.plans.resize_with(n, || Plan {
+            costs: [0.0; WIDTH - 1],
+            choices: [Choice::Leaf; WIDTH - 1],
+            node_split: 0,
+        });
+        for index in (0..n).rev() {
+            self.plans[index] = self.plan_of(index);
+        }
+    }
+
+    fn plan_of(&self, index: usize) -> Plan {
+        let node = &self.tree.nodes[index];
+        let area = node.bounds.half_area();
+        let leaf = match self.leaf_kind(index) {
+            Some(Leaves::Blocks) => area * BLOCK_COST,
+            Some(Leaves::Ids) => area * ID_COST * node.count as f32,
+            None => f32::INFINITY,
+        };
+        let mut plan = Plan { costs: [leaf; WIDTH - 1], choices: [Choice::Fewer; WIDTH - 1], node_split: 0 };
+        plan.choices[0] = Choice::Leaf;
+        if node.left_count == 0 {
+            return plan;
+        }
+        let [a, b] = self.tree.children(index).map(|child| &self.plans[child].costs);
+        let best_split = |slots: usize| {
+            (1..slots).filter(|k| *k < WIDTH && slots - k < WIDTH).fold((f32::INFINITY, 1), |best, k| {
+                let cost = a[k - 1] + b[slots - k - 1];
+                if cost < best.0 { (cost, k) } else { best }
+            })
+        };
+        let (children, node_split) = best_split(WIDTH);
+        plan.node_split = node_split as u8;
+        let as_node = area * NODE_COST + children;
+        // The comparison also takes the node where costs overflow and no leaf is possible.
+        if leaf == f32::INFINITY || as_node < leaf {
+            plan.costs[0] = as_node;
+            plan.choices[0] = Choice::Node;
+        }
+        for slots in 2..WIDTH {
+            let (cost, k) = best_split(slots);
+            plan.costs[slots - 1] = plan.costs[slots - 2];
+            if cost < plan.costs[slots - 2] {
+                plan.costs[slots - 1] = cost;
+                plan.choices[slots - 1] = Choice::Split(k as u8);
+            }
+        }
+        plan
+    }
+
+    /// Writes the subtree at `index` as the wide node `place`, which exists.
+    fn emit_node(&mut self, index: usize, place: usize) {
+        let mut slots = Vec::with_capacity(WIDTH);
+        let node = &self.tree.nodes[index];
+        if node.left_count == 0 || (index == 0 && matches!(self.plans[0].choices[0], Choice::Leaf)) {
+            slots.push((index, Choice::Leaf));
+        } else {
+            let [a, b] = self.tree.children(index);
+            let k = usize::from(self.plans[index].node_split);
+            self.slots_of(a, k, &mut slots);
+            self.slots_of(b, WIDTH - k, &mut slots);
+        }
+        // Children of a node lie side by side.
+        let first = self.out.nodes.len();
+        let interior = slots.iter().filter(|(_, choice)| matches!(choice, Choice::Node)).count();
+        self.out.nodes.resize_with(first + interior, Node::empty);
+        let mut next = first;
+        let mut inner = Vec::with_capacity(interior);
+        for (child, choice) in slots {
+            let reference = if matches!(choice, Choice::Node) {
+                inner.push((child, next));
+                next += 1;
+                Child::node(next - 1)
+            } else {
+                self.emit_leaf(child)
+            };
+            let bounds = self.tree.nodes[child].bounds;
+            self.out.nodes[place].push(&bounds, reference);
+        }
+        for (child, place) in inner {
+            self.emit_node(child, place);
+        }
+    }
+
+    /// Appends the binary nodes that fill up to `slots` slots, in tree order.
+    fn slots_of(&self, index: usize, mut slots: usize, out: &mut Vec<(usize, Choice)>) {
+        let plan = &self.plans[index];
+        while matches!(plan.choices[slots - 1], Choice::Fewer) {
+            slots -= 1;
+        }
+        match plan.choices[slots - 1] {
+            Choice::Split(k) => {
+                let [a, b] = self.tree.children(index);
+                self.slots_of(a, usize::from(k), out);
+                self.slots_of(b, slots - usize::from(k), out);
+            }
+            choice => out.push((index, choice)),
+        }
+    }
+
+    fn emit_leaf(&mut self, index: usize) -> Child {
+        let node = &self.tree.nodes[index];
+        let range = node.first as usize..(node.first + node.count) as usize;
+        let mut ids: Vec<u32> = self.tree.prims[range].iter().map(|p| p.id).collect();
+        ids.sort_unstable();
+        if self.leaf_kind(index) == Some(Leaves::Ids) {
+            self.out.ids.extend(&ids);
+            return Child::ids(self.out.ids.len() - ids.len(), ids.len());
+        }
+        let mut block = TriangleBlock::empty();
+        for (lane, &id) in ids.iter().enumerate() {
+            for (v, p) in self.primitives.triangle(id as usize).iter().enumerate() {
+                for axis in 0..3 {
+                    block.vertices[3 * v + axis][lane] = p[axis];
+                }
+            }
+            block.ids[lane] = id;
+        }
+        self.out.blocks.push(block);
+        Child::blocks(self.out.blocks.len() - 1, 1)
+    }
+}

@@ -1,0 +1,82 @@
+//! The default structure: a tree of eight-wide nodes with triangles in blocks of eight, traversed with vector
+//! instructions chosen at run time.
+
+mod binary;
+mod collapse;
+mod kernels;
+mod layout;
+mod ray_setup;
+mod traverse;
+
+use crate::list::leaf_tester;
+use crate::options::{BuildError, BuildOptions};
+use crate::structure::{RayCounters, Structure, StructureSummary};
+use collapse::Leaves;
+use layout::{Node, TriangleBlock};
+use photinus_geometry::{Aabb, Hit, Primitives, Ray};
+use photinus_intersect::methods::woop::Woop;
+use photinus_intersect::{LeafTester, RtiMethod, sphere_tester};
+use std::sync::Arc;
+
+/// The name on the command line.
+pub const NAME: &str = "wide-bvh";
+/// One line for the help.
+pub const SUMMARY: &str = "eight-wide bounding volume hierarchy with vector instructions";
+/// Where it was published.
+pub const SOURCE: &str = "Wald, Benthin, Boulos, RT 2008; Ylitie, Karras, Laine, HPG 2017";
+
+/// The tree.
+struct WideBvh {
+    bounds: Aabb,
+    nodes: Vec<Node>,
+    blocks: Vec<TriangleBlock>,
+    ids: Vec<u32>,
+    tester: Box<dyn LeafTester>,
+}
+
+/// See [`crate::build`].
+pub fn build(primitives: Arc<Primitives>, options: &BuildOptions) -> Result<Box<dyn Structure>, BuildError> {
+    // The blocks hold the triangles of the fused method; the tester is left with the spheres.
+    let fused = options.method == <Woop as RtiMethod<f32>>::NAME;
+    let tester = if fused { sphere_tester(&primitives) } else { leaf_tester(&primitives, options)? };
+    let tree = binary::build(&primitives);
+    let bounds = tree.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds);
+    let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
+    let arrays = collapse::collapse(&tree, &primitives, leaves)
+        .ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
+    Ok(Box::new(WideBvh { bounds, nodes: arrays.nodes, blocks: arrays.blocks, ids: arrays.ids, tester }))
+}
+
+impl Structure for WideBvh {
+    fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
+        assert_eq!(rays.len(), hits.len());
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.trace::<_, false, false>(kernels::Scalar, ray, &mut RayCounters::default());
+        }
+    }
+
+    fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len());
+        for (ray, hit) in rays.iter().zip(occluded) {
+            *hit = self.trace::<_, true, false>(kernels::Scalar, ray, &mut RayCounters::default()).is_hit();
+        }
+    }
+
+    fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), hits.len());
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.trace::<_, false, true>(kernels::Scalar, ray, counters);
+        }
+    }
+
+    fn any_hit_counted(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), occluded.len());
+        for (ray, hit) in rays.iter().zip(occluded) {
+            *hit = self.trace::<_, true, true>(kernels::Scalar, ray, counters).is_hit();
+        }
+    }
+
+    fn summary(&self) -> StructureSummary {
+        StructureSummary { name: NAME, nodes: self.nodes.len() as u64, ..StructureSummary::default() }
+    }
+}

@@ -1,0 +1,74 @@
+//! What every ray-triangle method answers.
+
+use photinus_num::Scalar;
+
+/// Where a ray meets a triangle: the point is `A + alpha (B - A) + beta (C - A)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleHit<S> {
+    /// Ray parameter.
+    pub t: S,
+    /// Weight of the second vertex.
+    pub alpha: S,
+    /// Weight of the third vertex.
+    pub beta: S,
+}
+
+/// A ray-triangle intersection test (thesis: RTI).
+///
+/// All methods are closed: points on edges and vertices are hits, and so are `t = t_min` and `t = t_max`. Degenerate
+/// triangles ([`is_degenerate`]) and rays that are not finite or have no direction never hit. Both faces are hit.
+pub trait RtiMethod<S: Scalar> {
+    /// The name on the command line.
+    const NAME: &'static str;
+
+    /// What is computed once for a triangle.
+    type Prepared: Copy;
+
+    /// What is computed once for a ray.
+    type Started: Copy;
+
+    /// Prepares the triangle of vertices A, B, C.
+    fn prepare(vertices: [[S; 3]; 3]) -> Self::Prepared;
+
+    /// Starts a ray; `dir` need not be of unit length. `None`: the ray can hit nothing.
+    fn start(origin: [S; 3], dir: [S; 3]) -> Option<Self::Started>;
+
+    /// The intersection with `t_min <= t <= t_max`, if there is one.
+    fn intersect(ray: &Self::Started, triangle: &Self::Prepared, t_min: S, t_max: S) -> Option<TriangleHit<S>>;
+}
+
+/// Whether a triangle spans no area: the cross product of its edges, in doubles, is exactly zero or not finite.
+pub fn is_degenerate<S: Scalar>(vertices: &[[S; 3]; 3]) -> bool {
+    let [a, b, c] = vertices.map(|v| v.map(S::to_f64));
+    let n = cross(sub(b, a), sub(c, a));
+    !n.iter().all(|x| x.is_finite()) || n == [0.0; 3]
+}
+
+/// Whether a ray can hit anything: finite, with a direction.
+pub(crate) fn is_traceable<S: Scalar>(origin: &[S; 3], dir: &[S; 3]) -> bool {
+    origin.iter().chain(dir).all(|x| x.is_finite()) && dir.iter().any(|&x| x != S::zero())
+}
+
+pub(crate) fn sub<S: Scalar>(a: [S; 3], b: [S; 3]) -> [S; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub(crate) fn dot<S: Scalar>(a: [S; 3], b: [S; 3]) -> S {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross<S: Scalar>(a: [S; 3], b: [S; 3]) -> [S; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The axis of the largest magnitude, the lowest of equals.
+pub(crate) fn dominant_axis<S: Scalar>(v: &[S; 3]) -> usize {
+    let [x, y, z] = v.map(S::abs);
+    if x >= y && x >= z {
+        0
+    } else if y >= z {
+        1
+    } else {
+        2
+    }
+}
