@@ -1,8 +1,19 @@
 //! Photon storage and search. This crate knows no rays: photons come in as data, and questions about them as points,
 //! radii and counts.
+//!
+//! [`build`] makes a member of the family by its command-line name; [`SEARCHES`] lists the members.
 
+mod flux;
+mod inclusion;
+mod kernel;
+mod list;
+mod nearest;
+mod octahedral;
 mod photon;
 mod search;
+mod searches;
 
-pub use photon::Photon;
-pub use search::{GatherQuery, Gathered, Kernel, Neighbor, Search, SearchSummary};
+pub use kernel::Kernel;
+pub use list::{BuildError, BuildOptions, DEFAULT_SEARCH, SEARCHES, SearchMember, build, find_search};
+pub use photon::{Photon, PhotonError};
+pub use search::{GatherQuery, Gathered, Neighbor, Search, SearchSummary};

@@ -1,25 +1,8 @@
 //! What every photon search answers.
 
-use crate::Photon;
+use crate::{Kernel, Photon};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
-
-/// Weight of a photon at distance d from the middle of a search of radius r. All integrate to one over the disc when
-/// divided by [`Kernel::area`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kernel {
-    /// 1.
-    Constant,
-    /// 1 - d / (k r), Jensen's cone filter with constant k >= 1.
-    Cone {
-        /// Jensen's k.
-        k: f32,
-    },
-    /// 1 - (d/r)^2.
-    Epanechnikov,
-    /// Jensen's Gaussian: 0.918 (1 - (1 - exp(-1.953 d^2 / 2 r^2)) / (1 - exp(-1.953))).
-    Gaussian,
-}
 
 /// A question: what lands around `position`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +11,10 @@ pub struct GatherQuery {
     pub position: Vec3,
     /// Radius in scene units; zero or more.
     pub radius: f32,
-    /// Surface normal (unit): photons whose stored normal differs by more than 60 degrees are left out.
+    /// Surface normal (unit): photons whose stored normal differs by more than 60 degrees are left out; the zero vector
+    /// leaves out all.
     pub normal: Vec3,
-    /// Only photons that have made at most this many bounces (1 for a photon straight from its light).
+    /// Only photons of at most this [`Photon::depth`] (1: photons straight from their light); from 127 on, all.
     pub max_depth: u32,
 }
 
@@ -63,10 +47,18 @@ pub struct SearchSummary {
     pub bytes: u64,
 }
 
-/// A photon search structure. Photon ids are indices into the slice that it was built over.
+/// A photon search structure. Photon ids are indices into the vector that it was built over, whatever order the
+/// member keeps its photons in; [`Search::photon`] reads them back.
+///
+/// All members find the same photons: those with `distance_sq <= radius * radius`, where `distance_sq` is
+/// `(dx * dx + dy * dy) + dz * dz` in f32. A query with a position that is not finite or a radius that is negative or
+/// NaN finds nothing; radius 0 finds what lies at the very position, an infinite radius everything.
 pub trait Search: Send + Sync {
-    /// Sums kernel-weighted flux for each query; `out` is as long as `queries`. Photons are found where
-    /// `distance_sq <= radius * radius`.
+    /// Sums kernel-weighted flux for each query; `out` is as long as `queries`. A photon counts where it lies within
+    /// the radius, its normal is within 60 degrees of the query's and its depth is at most the query's.
+    ///
+    /// Every result depends on its query and the photons only: not on the rest of the batch, its order, the number of
+    /// threads or the vector width. Large batches use the threads of the current rayon pool.
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]);
 
     /// As [`Search::gather`] with the work counted: the same results, more slowly.
@@ -87,6 +79,12 @@ pub trait Search: Send + Sync {
 
     /// The `k` nearest photons within `radius`, by distance, ties by id; `found` is cleared first.
     fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>);
+
+    /// The photon of an id.
+    ///
+    /// # Panics
+    /// Where `id` is no index of the vector that the search was built over.
+    fn photon(&self, id: u32) -> Photon;
 
     /// What was built.
     fn summary(&self) -> SearchSummary;

@@ -1,0 +1,127 @@
+//! Flux in one word: three 8-bit mantissas under a shared 8-bit scale.
+//!
+//! | bits | what |
+//! |---|---|
+//! | 0..8, 8..16, 16..24 | red, green, blue mantissa |
+//! | 24..32 | scale code c: the scale is 2^(c/2 - 72) for even c, 1.5 * 2^((c-1)/2 - 72) for odd c |
+//!
+//! A channel is mantissa * scale. Half steps of the exponent keep the largest mantissa above 170, so that the quantum
+//! is below 1/170 of the largest channel. Mantissas are rounded up or down at random with the probabilities that make
+//! the mean exact: a map holds thousands of photons of equal flux, and rounding them all alike would tint the picture.
+
+use photinus_geometry::Vec3;
+
+/// Exponent field of the scale of code 0.
+pub(crate) const SCALE_BIAS: u32 = 127 - 72;
+
+/// Largest flux of a channel that can be stored, W: 255 * 1.5 * 2^55.
+pub(crate) const MAX_FLUX: f32 = 255.0 * 1.5 * (1u64 << 55) as f32;
+
+/// The scale of a word, W.
+#[inline]
+pub(crate) fn scale(word: u32) -> f32 {
+    f32::from_bits(((word >> 24) << 22) + (SCALE_BIAS << 23))
+}
+
+/// The three mantissas of a word, 0..=255.
+#[inline]
+pub(crate) fn mantissas(word: u32) -> [f32; 3] {
+    [word & 255, (word >> 8) & 255, (word >> 16) & 255].map(|m| m as f32)
+}
+
+/// The flux of a word, W; exact.
+#[inline]
+pub(crate) fn unpack(word: u32) -> Vec3 {
+    Vec3::from_array(mantissas(word)) * scale(word)
+}
+
+/// Packs a flux whose channels lie in `0..=MAX_FLUX`. `dither` holds a random word a channel.
+#[inline]
+pub(crate) fn pack(flux: Vec3, dither: [u32; 3]) -> u32 {
+    let largest = f64::from(flux.max_element());
+    // The least code whose 255 quanta hold the largest channel: f32 bits above the bias, in half octaves, rounded up.
+    let bits = ((largest * (1.0 / 255.0)) as f32).to_bits();
+    let mut code = bits.saturating_sub(SCALE_BIAS << 23).div_ceil(1 << 22);
+    if 255.0 * f64::from(scale(code << 24)) < largest {
+        code += 1;
+    }
+    let inv = 1.0 / f64::from(scale(code << 24));
+    let mantissa = |value: f32, dither: u32| {
+        let dither = f64::from(dither) * (1.0 / 4_294_967_296.0);
+        ((f64::from(value) * inv + dither) as u32).min(255)
+    };
+    mantissa(flux.x, dither[0])
+        | mantissa(flux.y, dither[1]) << 8
+        | mantissa(flux.z, dither[2]) << 16
+        | if largest > 0.0 { code << 24 } else { 0 }
+}
+
+/// Three words that look random and depend on nothing but `words`: the dither of a photon.
+#[inline]
+pub(crate) fn dither(words: impl IntoIterator<Item = u32>) -> [u32; 3] {
+    // Multiply-xorshift mixing in 64 bits with odd constants; each channel takes its own finish.
+    let mut h = 0x9E37_79B9_7F4A_7C15u64;
+    for w in words {
+        h = (h ^ u64::from(w)).wrapping_mul(0xD6E8_FEB8_6659_FD93);
+        h ^= h >> 32;
+    }
+    [0x1000_0001u64, 0x2000_0003, 0x3000_0005].map(|salt| {
+        let mut x = (h ^ salt).wrapping_mul(0xA24B_AED4_963E_E407);
+        x ^= x >> 29;
+        (x.wrapping_mul(0x9FB2_1C65_1E98_DF25) >> 32) as u32
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_decade_keeps_the_documented_error() {
+        let mut worst = 0f32;
+        for i in 0..200_000u32 {
+            let d = dither([i, 17]);
+            let [a, b, c] = dither([i, 29]).map(|w| w as f32 / 4_294_967_296.0);
+            let level = libm::powf(10.0, -12.0 + 24.0 * (i as f32 / 200_000.0));
+            let flux = Vec3::new(a, b * a, c) * level;
+            if flux.max_element() == 0.0 {
+                continue;
+            }
+            let error = (unpack(pack(flux, d)) - flux).abs().max_element() / flux.max_element();
+            worst = worst.max(error);
+        }
+        println!("seed 17, 29: worst error {worst:e} of the largest channel");
+        assert!(worst < 1.0 / 170.0, "{worst}");
+    }
+
+    #[test]
+    fn what_the_format_holds_is_kept_exactly() {
+        for word in [0u32, 0x8001_02FF, 0x80FF_FFFF, 0x7FFF_00AB, 0xFFFF_FFFF, 0x00FF_0001] {
+            for d in [0, 1 << 31, u32::MAX] {
+                assert_eq!(pack(unpack(word), [d; 3]), word, "{word:x}");
+            }
+        }
+        assert_eq!(pack(Vec3::ZERO, [u32::MAX; 3]), 0);
+        assert_eq!(unpack(pack(Vec3::splat(MAX_FLUX), [u32::MAX; 3])), Vec3::splat(MAX_FLUX));
+        assert!(unpack(pack(Vec3::splat(1e-40), [5; 3])).max_element() < 1e-20);
+    }
+
+    /// Equal fluxes: the mean of n packed ones has a standard error of at most half a quantum over sqrt(n).
+    #[test]
+    fn sums_of_equal_fluxes_are_unbiased() {
+        const N: u32 = 200_000;
+        for flux in [Vec3::new(1.234e-5, 3.3e-6, 7.7e-8), Vec3::new(0.9, 1.0, 0.00123), Vec3::splat(1e7 / 3.0)] {
+            let mut sum = [0f64; 3];
+            for i in 0..N {
+                for (sum, channel) in sum.iter_mut().zip(unpack(pack(flux, dither([i, 5]))).to_array()) {
+                    *sum += f64::from(channel);
+                }
+            }
+            let bound = 5.0 * 0.5 / 170.0 * f64::from(flux.max_element()) / f64::from(N).sqrt();
+            for (sum, channel) in sum.into_iter().zip(flux.to_array()) {
+                let error = (sum / f64::from(N) - f64::from(channel)).abs();
+                assert!(error < bound, "{flux}: {error} against {bound}");
+            }
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The inclusion test: which photons a query finds, and what each adds to its sums. Every member and every vector
+//! kernel repeats these operations in this order.
+
+use crate::kernel::PreparedKernel;
+use crate::octahedral::decode_scaled;
+use crate::photon::{DEPTH_MASK, DEPTH_SHIFT, NORMAL_MAX, normal_code};
+use crate::{GatherQuery, Kernel};
+use photinus_geometry::Vec3;
+
+/// Squared radius of a search; negative, so that nothing is found, where the question makes no sense.
+#[inline]
+pub(crate) fn radius_sq(position: Vec3, radius: f32) -> f32 {
+    if radius >= 0.0 && position.is_finite() { radius * radius } else { -1.0 }
+}
+
+/// Squared distance.
+#[inline]
+pub(crate) fn distance_sq(photon: Vec3, position: Vec3) -> f32 {
+    let d = photon - position;
+    (d.x * d.x + d.y * d.y) + d.z * d.z
+}
+
+/// A query with what does not depend on the photon computed once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PreparedQuery {
+    pub(crate) position: Vec3,
+    pub(crate) r2: f32,
+    pub(crate) normal: Vec3,
+    /// The largest depth found, in place in a surface word.
+    pub(crate) max_depth: u32,
+    pub(crate) kernel: PreparedKernel,
+}
+
+impl PreparedQuery {
+    #[inline]
+    pub(crate) fn new(query: &GatherQuery, kernel: Kernel) -> Self {
+        Self {
+            position: query.position,
+            r2: radius_sq(query.position, query.radius),
+            normal: query.normal,
+            max_depth: query.max_depth.min(127) << DEPTH_SHIFT,
+            kernel: PreparedKernel::new(kernel, query.radius),
+        }
+    }
+
+    /// Whether a photon with this surface word passes the tests of normal and depth.
+    #[inline]
+    pub(crate) fn accepts(&self, surface: u32) -> bool {
+        surface & DEPTH_MASK <= self.max_depth && self.normal_within_60(surface)
+    }
+
+    /// cos 60 = 1/2: with v the stored normal of any length, v . n >= |v| / 2, squared to save the root.
+    #[inline]
+    fn normal_within_60(&self, surface: u32) -> bool {
+        let v = decode_scaled(normal_code(surface), NORMAL_MAX);
+        let dot = (v.x * self.normal.x + v.y * self.normal.y) + v.z * self.normal.z;
+        let length_sq = (v.x * v.x + v.y * v.y) + v.z * v.z;
+        dot > 0.0 && dot * dot >= 0.25 * length_sq
+    }
+}

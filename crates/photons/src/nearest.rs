@@ -1,0 +1,92 @@
+//! The k nearest so far, in a max-heap by distance and then id (Jensen 2001, section 6.2).
+
+use crate::Neighbor;
+
+/// Keeps the k least of the neighbours offered, by distance, ties by id.
+pub(crate) struct NearestHeap<'a> {
+    heap: &'a mut Vec<Neighbor>,
+    k: usize,
+    r2: f32,
+}
+
+/// Order of answers.
+#[inline]
+pub(crate) fn closer(a: &Neighbor, b: &Neighbor) -> bool {
+    a.distance_sq < b.distance_sq || (a.distance_sq == b.distance_sq && a.photon < b.photon)
+}
+
+impl<'a> NearestHeap<'a> {
+    /// An empty heap in `found` for at most `k` neighbours with `distance_sq <= r2`.
+    #[inline]
+    pub(crate) fn new(found: &'a mut Vec<Neighbor>, k: usize, r2: f32) -> Self {
+        found.clear();
+        Self { heap: found, k, r2: if k == 0 { -1.0 } else { r2 } }
+    }
+
+    /// What lies farther than this is of no use.
+    #[inline]
+    pub(crate) fn limit(&self) -> f32 {
+        if self.heap.len() < self.k { self.r2 } else { self.heap[0].distance_sq }
+    }
+
+    /// Offers a neighbour.
+    #[inline]
+    pub(crate) fn offer(&mut self, neighbor: Neighbor) {
+        if !(neighbor.distance_sq <= self.r2) {
+            return;
+        }
+        if self.heap.len() < self.k {
+            self.heap.push(neighbor);
+            self.sift_up();
+        } else if closer(&neighbor, &self.heap[0]) {
+            sift_down(self.heap, neighbor);
+        }
+    }
+
+    fn sift_up(&mut self) {
+        let mut i = self.heap.len() - 1;
+        let item = self.heap[i];
+        while i > 0 {
+            let parent = (i - 1) / 2;
+            if !closer(&self.heap[parent], &item) {
+                break;
+            }
+            self.heap[i] = self.heap[parent];
+            i = parent;
+        }
+        self.heap[i] = item;
+    }
+
+    /// Puts the neighbours into order of distance.
+    #[inline]
+    pub(crate) fn finish(self) {
+        sort_by_distance(self.heap);
+    }
+}
+
+/// Replaces the root of a max-heap by `item`.
+#[inline]
+fn sift_down(heap: &mut [Neighbor], item: Neighbor) {
+    let mut i = 0;
+    loop {
+        let mut child = 2 * i + 1;
+        if child >= heap.len() {
+            break;
+        }
+        if child + 1 < heap.len() && closer(&heap[child], &heap[child + 1]) {
+            child += 1;
+        }
+        if !closer(&item, &heap[child]) {
+            break;
+        }
+        heap[i] = heap[child];
+        i = child;
+    }
+    heap[i] = item;
+}
+
+/// Sorts by distance, ties by id. Distances are not negative, so that their bits sort as they do.
+#[inline]
+pub(crate) fn sort_by_distance(found: &mut [Neighbor]) {
+    found.sort_unstable_by_key(|n| (u64::from(n.distance_sq.to_bits()) << 32) | u64::from(n.photon));
+}

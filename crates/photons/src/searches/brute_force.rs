@@ -1,0 +1,91 @@
+//! Every photon for every query: slow and obvious, what all other members are tested against.
+
+use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
+use crate::nearest::sort_by_distance;
+use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
+use photinus_geometry::Vec3;
+use photinus_profile::SearchCounters;
+
+pub(crate) const ABOUT: &str = "every photon for every query: the oracle";
+
+/// The photons as they came.
+pub(crate) struct BruteForce {
+    photons: Vec<Photon>,
+}
+
+impl BruteForce {
+    pub(crate) fn new(photons: Vec<Photon>) -> Self {
+        Self { photons }
+    }
+}
+
+impl Search for BruteForce {
+    /// Sums in f64 in the order of ids, rounded once.
+    fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
+        assert_eq!(queries.len(), out.len(), "one result a query");
+        for (query, out) in queries.iter().zip(out) {
+            let mut flux = [0f64; 3];
+            let mut count = 0;
+            self.visit(query, &mut |photon, d2| {
+                let weight = f64::from(kernel.weight(d2, query.radius));
+                for (sum, channel) in flux.iter_mut().zip(photon.flux().to_array()) {
+                    *sum += f64::from(channel) * weight;
+                }
+                count += 1;
+            });
+            *out = Gathered { flux: Vec3::from_array(flux.map(|c| c as f32)), count };
+        }
+    }
+
+    fn gather_counted(
+        &self,
+        queries: &[GatherQuery],
+        kernel: Kernel,
+        out: &mut [Gathered],
+        counters: &mut SearchCounters,
+    ) {
+        self.gather(queries, kernel, out);
+        *counters += SearchCounters {
+            searches: queries.len() as u64,
+            photons_tested: queries.len() as u64 * self.photons.len() as u64,
+            photons_found: out.iter().map(|o| u64::from(o.count)).sum(),
+        };
+    }
+
+    fn visit(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32)) {
+        let prepared = PreparedQuery::new(query, Kernel::Constant);
+        for photon in &self.photons {
+            let d2 = distance_sq(photon.position(), query.position);
+            if d2 <= prepared.r2 && prepared.accepts(photon.surface_word()) {
+                visit(photon, d2);
+            }
+        }
+    }
+
+    fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
+        let r2 = radius_sq(position, radius);
+        found.clear();
+        found.extend((0u32..).zip(&self.photons).filter_map(|(photon, p)| {
+            let distance_sq = distance_sq(p.position(), position);
+            (distance_sq <= r2).then_some(Neighbor { distance_sq, photon })
+        }));
+    }
+
+    fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>) {
+        self.within_radius(position, radius, found);
+        sort_by_distance(found);
+        found.truncate(k);
+    }
+
+    fn photon(&self, id: u32) -> Photon {
+        self.photons[id as usize]
+    }
+
+    fn summary(&self) -> SearchSummary {
+        SearchSummary {
+            name: "brute-force",
+            photons: self.photons.len() as u64,
+            bytes: (self.photons.capacity() * size_of::<Photon>()) as u64,
+        }
+    }
+}

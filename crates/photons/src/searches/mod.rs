@@ -1,0 +1,4 @@
+//! The members: one file each.
+
+pub(crate) mod brute_force;
+pub(crate) mod grid;
