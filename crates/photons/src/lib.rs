@@ -3,6 +3,7 @@
 //!
 //! [`build`] makes a member of the family by its command-line name; [`SEARCHES`] lists the members.
 
+mod error;
 mod flux;
 mod inclusion;
 mod kernel;
@@ -12,8 +13,10 @@ mod octahedral;
 mod photon;
 mod search;
 mod searches;
+mod visiting;
 
+pub use error::PhotonError;
 pub use kernel::Kernel;
-pub use list::{BuildError, BuildOptions, DEFAULT_SEARCH, SEARCHES, SearchMember, build, find_search};
-pub use photon::{Photon, PhotonError};
+pub use list::{BuildOptions, DEFAULT_SEARCH, SEARCHES, SearchMember, build, find_search, kd_balanced};
+pub use photon::Photon;
 pub use search::{GatherQuery, Gathered, Neighbor, Search, SearchSummary};

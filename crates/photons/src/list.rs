@@ -1,37 +1,21 @@
 //! The list of searches: what the command line, the documentation and the tests loop over.
 
-use crate::searches::{brute_force, grid};
-use crate::{Photon, Search};
+use crate::searches::{brute_force, grid, kd_balanced};
+use crate::{Photon, PhotonError, Search};
 
 /// What building a search may be told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BuildOptions {
-    /// The radius that most queries will have, scene units; `None`, or one that is not positive and finite: chosen
+    /// The radius that most queries will have, scene units; 0, or anything that is not positive and finite: chosen
     /// from the photons' density. It steers speed and memory, never what is found.
-    pub radius_hint: Option<f32>,
+    pub radius_hint: f32,
 }
 
 impl BuildOptions {
     /// The hint where it is of use.
     pub(crate) fn radius(&self) -> Option<f32> {
-        self.radius_hint.filter(|r| *r > 0.0 && r.is_finite())
+        Some(self.radius_hint).filter(|r| *r > 0.0 && r.is_finite())
     }
-}
-
-/// Why a search was not built.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BuildError {
-    /// No member has this name.
-    #[error("no photon search is called '{name}'; there are: {known}")]
-    UnknownSearch {
-        /// What was asked for.
-        name: String,
-        /// The names that there are.
-        known: String,
-    },
-    /// More photons than a search can number.
-    #[error("{0} photons are more than a search holds (2^31)")]
-    TooManyPhotons(usize),
 }
 
 /// A member of the family.
@@ -48,6 +32,11 @@ pub struct SearchMember {
 pub const SEARCHES: &[SearchMember] = &[
     SearchMember { name: "grid", about: grid::ABOUT, builder: |p, o| Box::new(grid::Grid::new(p, o)) },
     SearchMember {
+        name: "kd-balanced",
+        about: kd_balanced::ABOUT,
+        builder: |p, _| Box::new(kd_balanced::KdBalanced::new(&p)),
+    },
+    SearchMember {
         name: "brute-force",
         about: brute_force::ABOUT,
         builder: |p, _| Box::new(brute_force::BruteForce::new(p)),
@@ -58,16 +47,16 @@ pub const SEARCHES: &[SearchMember] = &[
 pub const DEFAULT_SEARCH: &str = "grid";
 
 /// Most photons in one search.
-const MAX_PHOTONS: usize = 1 << 31;
+const MAX_PHOTONS: usize = 1 << 30;
 
 impl SearchMember {
     /// Builds this search over `photons`; ids are indices into them. Deterministic on any number of threads.
     ///
     /// # Errors
-    /// More than 2^31 photons.
-    pub fn build(&self, photons: Vec<Photon>, options: &BuildOptions) -> Result<Box<dyn Search>, BuildError> {
+    /// More than 2^30 photons.
+    pub fn build(&self, photons: Vec<Photon>, options: &BuildOptions) -> Result<Box<dyn Search>, PhotonError> {
         if photons.len() > MAX_PHOTONS {
-            return Err(BuildError::TooManyPhotons(photons.len()));
+            return Err(PhotonError::TooManyPhotons(photons.len()));
         }
         Ok((self.builder)(photons, options))
     }
@@ -77,18 +66,23 @@ impl SearchMember {
 ///
 /// # Errors
 /// No such member.
-pub fn find_search(name: &str) -> Result<&'static SearchMember, BuildError> {
+pub fn find_search(name: &str) -> Result<&'static SearchMember, PhotonError> {
     let wanted = name.replace('_', "-");
-    SEARCHES.iter().find(|m| m.name == wanted).ok_or_else(|| BuildError::UnknownSearch {
-        name: name.to_owned(),
-        known: SEARCHES.iter().map(|m| m.name).collect::<Vec<_>>().join(", "),
-    })
+    SEARCHES.iter().find(|m| m.name == wanted).ok_or_else(|| PhotonError::UnknownSearch(name.to_owned()))
 }
 
 /// Builds the search called `name` over `photons`.
 ///
 /// # Errors
-/// No such member, or more than 2^31 photons.
-pub fn build(name: &str, photons: Vec<Photon>, options: &BuildOptions) -> Result<Box<dyn Search>, BuildError> {
+/// No such member, or more than 2^30 photons.
+pub fn build(name: &str, photons: Vec<Photon>, options: &BuildOptions) -> Result<Box<dyn Search>, PhotonError> {
     find_search(name)?.build(photons, options)
+}
+
+/// The balanced kd-tree: the search for distances to neighbours where no radius is known yet.
+///
+/// # Errors
+/// More than 2^30 photons.
+pub fn kd_balanced(photons: Vec<Photon>) -> Result<Box<dyn Search>, PhotonError> {
+    build("kd-balanced", photons, &BuildOptions::default())
 }

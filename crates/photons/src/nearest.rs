@@ -26,7 +26,7 @@ impl<'a> NearestHeap<'a> {
     /// What lies farther than this is of no use.
     #[inline]
     pub(crate) fn limit(&self) -> f32 {
-        if self.heap.len() < self.k { self.r2 } else { self.heap[0].distance_sq }
+        if self.heap.len() < self.k || self.k == 0 { self.r2 } else { self.heap[0].distance_sq }
     }
 
     /// Offers a neighbour.

@@ -1,6 +1,6 @@
 //! The photon as it is stored: 24 bytes.
 
-use crate::{flux, octahedral};
+use crate::{PhotonError, flux, octahedral};
 use photinus_geometry::Vec3;
 
 /// Largest component of an encoded direction.
@@ -15,23 +15,6 @@ pub(crate) const DEPTH_MASK: u32 = 0x7F00_0000;
 pub(crate) const DEPTH_SHIFT: u32 = 24;
 /// The bit of [`Photon::surface_word`] that marks a caustic photon.
 const CAUSTIC_BIT: u32 = 1 << 31;
-
-/// Why a photon was refused.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum PhotonError {
-    /// The position has a component that is NaN or infinite.
-    #[error("photon position {0} is not finite")]
-    Position(Vec3),
-    /// The flux has a channel that is NaN, negative or above the largest that can be stored.
-    #[error("photon flux {0} W is not in 0..1.3e19 in every channel")]
-    Flux(Vec3),
-    /// The direction is zero, NaN or infinite.
-    #[error("photon direction {0} is no direction")]
-    Direction(Vec3),
-    /// The normal is zero, NaN or infinite.
-    #[error("photon normal {0} is no direction")]
-    Normal(Vec3),
-}
 
 /// A stored photon.
 ///

@@ -2,6 +2,7 @@
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
 use crate::nearest::sort_by_distance;
+use crate::visiting::gather_batch_by_visiting;
 use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
@@ -20,21 +21,8 @@ impl BruteForce {
 }
 
 impl Search for BruteForce {
-    /// Sums in f64 in the order of ids, rounded once.
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
-        assert_eq!(queries.len(), out.len(), "one result a query");
-        for (query, out) in queries.iter().zip(out) {
-            let mut flux = [0f64; 3];
-            let mut count = 0;
-            self.visit(query, &mut |photon, d2| {
-                let weight = f64::from(kernel.weight(d2, query.radius));
-                for (sum, channel) in flux.iter_mut().zip(photon.flux().to_array()) {
-                    *sum += f64::from(channel) * weight;
-                }
-                count += 1;
-            });
-            *out = Gathered { flux: Vec3::from_array(flux.map(|c| c as f32)), count };
-        }
+        gather_batch_by_visiting(self, queries, kernel, out);
     }
 
     fn gather_counted(

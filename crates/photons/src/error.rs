@@ -1,0 +1,31 @@
+//! What this crate refuses.
+
+use crate::SEARCHES;
+use photinus_geometry::Vec3;
+
+/// Why a photon was refused, or a search not built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PhotonError {
+    /// The position has a component that is NaN or infinite.
+    #[error("photon position {0} is not finite")]
+    Position(Vec3),
+    /// The flux has a channel that is NaN, negative or above the largest that can be stored.
+    #[error("photon flux {0} W is not in 0..1.3e19 in every channel")]
+    Flux(Vec3),
+    /// The direction is zero, NaN or infinite.
+    #[error("photon direction {0} is no direction")]
+    Direction(Vec3),
+    /// The normal is zero, NaN or infinite.
+    #[error("photon normal {0} is no direction")]
+    Normal(Vec3),
+    /// No search has this name.
+    #[error("no photon search is called '{0}'; there are: {names}", names = names())]
+    UnknownSearch(String),
+    /// More photons than a search can number.
+    #[error("{0} photons are more than a search holds (2^30); store fewer a pass")]
+    TooManyPhotons(usize),
+}
+
+fn names() -> String {
+    SEARCHES.iter().map(|m| m.name).collect::<Vec<_>>().join(", ")
+}
