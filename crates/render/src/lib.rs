@@ -3,5 +3,6 @@
 
 pub mod bsdf;
 mod surface;
+pub mod texture;
 
 pub use surface::SurfacePoint;

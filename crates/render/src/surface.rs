@@ -1,5 +1,6 @@
 //! A point on a surface, with all that shading needs.
 
+use crate::texture::TextureLookup;
 use photinus_geometry::{Frame, Vec2, Vec3};
 
 /// A point on a surface.
@@ -25,4 +26,12 @@ pub struct SurfacePoint {
     pub shape: u32,
     /// Primitive id.
     pub prim: u32,
+}
+
+impl SurfacePoint {
+    /// Where textures are read for this point.
+    #[inline]
+    pub fn lookup(&self) -> TextureLookup {
+        TextureLookup { uv: self.uv, footprint: self.uv_footprint, vertex_color: self.color }
+    }
 }

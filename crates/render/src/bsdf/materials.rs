@@ -1,0 +1,133 @@
+//! All materials of a scene, prepared once.
+
+use super::builder::Builder;
+use super::microfacet::{PlasticTable, SplitSumTable};
+use super::{Bsdf, SurfaceModel, fresnel_diffuse_reflectance};
+use crate::SurfacePoint;
+use crate::texture::{TextureLookup, Textures};
+use photinus_geometry::Vec3;
+use photinus_scene::{ColorInput, Material, MaterialId, MicrofacetModel, Scene};
+
+/// All materials and textures of a scene, ready to be resolved at surface points.
+#[derive(Clone, Debug)]
+pub struct Materials {
+    materials: Vec<Prepared>,
+    textures: Textures,
+    model: SurfaceModel,
+    plastics: Vec<PlasticTable>,
+    split_sums: Vec<(MicrofacetModel, SplitSumTable)>,
+    /// Relative index and mean reflectance under diffuse light from the side that it is relative to.
+    diffuse_reflectances: Vec<(f32, f32)>,
+}
+
+#[derive(Clone, Debug)]
+struct Prepared {
+    material: Material,
+    has_opacity: bool,
+}
+
+/// What a material id stands for that is on no list.
+const MISSING: Material = Material::Diffuse { reflectance: ColorInput::Constant(Vec3::splat(0.5)) };
+
+impl Materials {
+    /// Prepares textures and the tables that the materials need. Indices out of range and materials that nest themselves
+    /// become mid-grey.
+    pub fn new(scene: &Scene, model: SurfaceModel) -> Self {
+        let mut result = Self {
+            materials: Vec::with_capacity(scene.materials.len()),
+            textures: Textures::new(&scene.textures),
+            model,
+            plastics: Vec::new(),
+            split_sums: Vec::new(),
+            diffuse_reflectances: Vec::new(),
+        };
+        for (i, named) in scene.materials.iter().enumerate() {
+            let sound = named.material.nested().all(|id| (id.0 as usize) < i);
+            let material = if sound { named.material.clone() } else { MISSING };
+            let has_opacity = matches!(material, Material::Mask { .. } | Material::Null)
+                || material.nested().any(|id| result.materials[id.0 as usize].has_opacity);
+            if model == SurfaceModel::Physical {
+                for eta in super::members::indices(&material) {
+                    if result.diffuse_reflectances.iter().all(|(known, _)| *known != eta) {
+                        result.diffuse_reflectances.push((eta, fresnel_diffuse_reflectance(eta)));
+                    }
+                }
+                for (facets, plastic_eta) in super::members::tables(&material) {
+                    result.add_tables(facets, plastic_eta);
+                }
+            }
+            result.materials.push(Prepared { material, has_opacity });
+        }
+        result
+    }
+
+    fn add_tables(&mut self, model: MicrofacetModel, plastic_eta: Option<f32>) {
+        match plastic_eta {
+            Some(eta) if self.plastic_table(model, eta).is_none() => self.plastics.push(PlasticTable::new(model, eta)),
+            None if self.split_sum(model).is_none() => self.split_sums.push((model, SplitSumTable::new(model))),
+            _ => {}
+        }
+    }
+
+    /// Bytes held beyond the scene itself.
+    pub fn bytes(&self) -> usize {
+        let tables: usize = self.plastics.iter().map(PlasticTable::bytes).sum();
+        let sums: usize = self.split_sums.iter().map(|(_, table)| table.bytes()).sum();
+        self.materials.len() * size_of::<Prepared>() + self.textures.bytes() + tables + sums
+    }
+
+    /// How faithfully surfaces are modelled.
+    pub fn model(&self) -> SurfaceModel {
+        self.model
+    }
+
+    /// The textures.
+    pub fn textures(&self) -> &Textures {
+        &self.textures
+    }
+
+    pub(super) fn material(&self, id: MaterialId) -> &Material {
+        self.materials.get(id.0 as usize).map_or(&MISSING, |prepared| &prepared.material)
+    }
+
+    pub(super) fn plastic_table(&self, model: MicrofacetModel, eta: f32) -> Option<&PlasticTable> {
+        self.plastics.iter().find(|table| table.model == model && table.eta == eta)
+    }
+
+    pub(super) fn split_sum(&self, model: MicrofacetModel) -> Option<&SplitSumTable> {
+        self.split_sums.iter().find(|(m, _)| *m == model).map(|(_, table)| table)
+    }
+
+    /// Mean reflectance of a smooth interface of relative index `eta` under diffuse light.
+    pub(super) fn diffuse_reflectance(&self, eta: f32) -> f32 {
+        let known = self.diffuse_reflectances.iter().find(|(known, _)| *known == eta);
+        known.map_or_else(|| fresnel_diffuse_reflectance(eta), |(_, mean)| *mean)
+    }
+
+    /// Scattering at `point` towards `wo`, a unit vector in world space that points away from the surface: resolves
+    /// textures, two-sidedness, bump and normal maps and blends.
+    ///
+    /// Holes are not part of it: it describes the surface that is met with probability
+    /// [`opacity`](Self::opacity). Where nothing is there at all, light passes straight through.
+    pub fn resolve(&self, material: MaterialId, point: &SurfacePoint, wo: Vec3) -> Bsdf {
+        Builder::resolve(self, material, point, wo)
+    }
+
+    /// Whether [`opacity`](Self::opacity) can be below 1 anywhere.
+    #[inline]
+    pub fn has_opacity(&self, material: MaterialId) -> bool {
+        self.materials.get(material.0 as usize).is_some_and(|prepared| prepared.has_opacity)
+    }
+
+    /// Probability, 0 to 1, that a ray meets the surface instead of passing straight through: masks, 0 for the null
+    /// material. For rays of any kind, shadow rays included.
+    pub fn opacity(&self, material: MaterialId, at: &TextureLookup) -> f32 {
+        if self.has_opacity(material) { super::members::opacity(self, material, at, 0) } else { 1.0 }
+    }
+
+    /// The colour of an input, as for the emission of a shape.
+    #[inline]
+    pub fn color(&self, input: ColorInput, at: &TextureLookup) -> Vec3 {
+        self.textures.color(input, at)
+    }
+}

@@ -1,0 +1,54 @@
+//! A diffuse base under a rough dielectric coat.
+
+use super::dielectric::{normal_reflectance, relative_index};
+use super::plastic::push_base;
+use crate::bsdf::builder::{Builder, Place, reflection_kind};
+use crate::bsdf::lobe::LobeKind;
+use crate::bsdf::lobes::{CoatTransmittance, CoatedDiffuse, FacetFresnel, MicrofacetReflection};
+use crate::bsdf::microfacet::{Microfacets, is_mirror};
+use crate::bsdf::{GATHER_ALPHA, SurfaceModel};
+use photinus_geometry::Vec3;
+use photinus_scene::Material;
+
+pub fn add(builder: &mut Builder, place: Place, material: &Material) {
+    let Material::RoughPlastic { model, alpha, int_ior, ext_ior, diffuse_reflectance, specular_reflectance, nonlinear } =
+        *material
+    else {
+        return;
+    };
+    if !place.front {
+        return;
+    }
+    let alpha = builder.number(alpha);
+    let eta = relative_index([int_ior, ext_ior]);
+    if is_mirror([alpha; 2]) {
+        let smooth = Material::Plastic { int_ior, ext_ior, diffuse_reflectance, specular_reflectance, nonlinear };
+        return super::plastic::add(builder, place, &smooth);
+    }
+    let base = builder.factor(diffuse_reflectance);
+    let specular = builder.factor(specular_reflectance);
+    let facets = Microfacets::new(model, [alpha; 2]);
+    let table = match (builder.model(), builder.materials.plastic_table(model, eta)) {
+        (SurfaceModel::Physical, Some(table)) => table,
+        _ => {
+            let f = normal_reflectance(eta);
+            if facets.mean_alpha() < GATHER_ALPHA {
+                builder.delta_reflection(place, specular * f);
+                return builder.lambert(place, base * (1.0 - f));
+            }
+            return builder.lambert(place, specular * f + base * (1.0 - f));
+        }
+    };
+    let coat = table.at(facets.mean_alpha());
+    push_coat(builder, place, facets, eta, 1.0 - coat.transmittance.at(builder.wo(place).z), specular);
+    let transmittance = CoatTransmittance::Rough(coat.transmittance);
+    let shape = CoatedDiffuse { transmittance, inv_eta_sq: 1.0 / (eta * eta) };
+    push_base(builder, place, shape, base, coat.internal_reflectance, nonlinear);
+}
+
+/// Adds the coat's own reflection, of known directional reflectance.
+pub fn push_coat(builder: &mut Builder, place: Place, facets: Microfacets, eta: f32, reflectance: f32, weight: Vec3) {
+    let shape = MicrofacetReflection { facets, fresnel: FacetFresnel::Dielectric { eta } };
+    let albedo = [weight * reflectance, Vec3::ZERO];
+    builder.push(place, LobeKind::Reflection(shape), reflection_kind(facets.mean_alpha()), weight, albedo, 1.0);
+}

@@ -1,0 +1,208 @@
+//! Directional reflectances of rough surfaces, tabulated once per scene.
+
+use super::{Microfacets, reflect};
+use crate::bsdf::fresnel::{fresnel_dielectric, schlick_weight};
+use photinus_geometry::Vec3;
+use photinus_scene::MicrofacetModel;
+
+/// Nodes over the cosine, at (i / 15)^2: reflectance bends most towards grazing directions.
+const COSINES: usize = 16;
+
+/// Nodes over the roughness, at (i / 15)^2.
+const ALPHAS: usize = 16;
+
+/// Points a side of the grid over the random square.
+const POINTS: u32 = 20;
+
+/// Values over the cosine, linear in its square root between nodes. Small enough to be part of a lobe.
+#[derive(Clone, Copy, Debug)]
+pub struct CosTable([f32; COSINES]);
+
+impl CosTable {
+    /// The value at `cos` in 0..=1.
+    #[inline]
+    pub fn at(&self, cos: f32) -> f32 {
+        let x = cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32;
+        let i = (x as usize).min(COSINES - 2);
+        self.0[i] + (self.0[i + 1] - self.0[i]) * (x - i as f32)
+    }
+
+    fn node(i: usize) -> f32 {
+        let x = i as f32 / (COSINES - 1) as f32;
+        (x * x).max(1e-4)
+    }
+
+    fn blend(a: &Self, b: &Self, t: f32) -> Self {
+        Self(std::array::from_fn(|i| a.0[i] + (b.0[i] - a.0[i]) * t))
+    }
+}
+
+/// Index and fraction of a roughness among the nodes.
+fn alpha_place(alpha: f32) -> (usize, f32) {
+    let x = alpha.clamp(0.0, 1.0).sqrt() * (ALPHAS - 1) as f32;
+    let i = (x as usize).min(ALPHAS - 2);
+    (i, x - i as f32)
+}
+
+fn alpha_node(i: usize) -> f32 {
+    let x = i as f32 / (ALPHAS - 1) as f32;
+    x * x
+}
+
+/// Means over the visible facets from a direction of the given cosine of `f(wo.m)` times the shadowing of the mirrored
+/// direction: the directional reflectance where f is the Fresnel reflectance.
+fn mean_over_facets<const N: usize>(facets: &Microfacets, cos: f32, f: impl Fn(f32) -> [f32; N]) -> [f32; N] {
+    let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+    let mut sum = [0.0f64; N];
+    for i in 0..POINTS {
+        for j in 0..POINTS {
+            let u = [(i as f32 + 0.5) / POINTS as f32, (j as f32 + 0.5) / POINTS as f32];
+            let m = facets.sample_visible(wo, u);
+            let wi = reflect(wo, m);
+            if wi.z > 0.0 {
+                let shadow = facets.g1(wi);
+                for (s, v) in sum.iter_mut().zip(f(wo.dot(m))) {
+                    *s += f64::from(v * shadow);
+                }
+            }
+        }
+    }
+    sum.map(|s| (s / f64::from(POINTS * POINTS)) as f32)
+}
+
+/// A rough dielectric coat.
+#[derive(Clone, Copy, Debug)]
+pub struct Coat {
+    /// What passes from outside, over the cosine.
+    pub transmittance: CosTable,
+    /// Its mean under diffuse light, 2 * integral of T(mu) mu.
+    pub mean_transmittance: f32,
+    /// Reflectance of the inside under diffuse light.
+    pub internal_reflectance: f32,
+}
+
+/// Reflectances of one dielectric interface for all roughnesses, for plastics.
+#[derive(Clone, Debug)]
+pub struct PlasticTable {
+    /// What it was made for.
+    pub model: MicrofacetModel,
+    /// Index inside over index outside.
+    pub eta: f32,
+    coats: Vec<Coat>,
+}
+
+impl PlasticTable {
+    /// About 20 ms for GGX.
+    pub fn new(model: MicrofacetModel, eta: f32) -> Self {
+        let reflectance = |alpha: f32, cos: f32, eta: f32| {
+            if alpha <= crate::bsdf::MIRROR_ALPHA {
+                return fresnel_dielectric(cos, eta).0;
+            }
+            let facets = Microfacets::new(model, [alpha; 2]);
+            mean_over_facets(&facets, cos, |c| [fresnel_dielectric(c, eta).0])[0]
+        };
+        let coat = |a: usize| {
+            let alpha = alpha_node(a);
+            let transmittance = CosTable(std::array::from_fn(|i| 1.0 - reflectance(alpha, CosTable::node(i), eta)));
+            // 2 * integral of R(mu) mu dmu = integral of R over mu^2: midpoints.
+            let mean = |steps: u32, f: &dyn Fn(f32) -> f32| {
+                (0..steps).map(|i| f(((i as f32 + 0.5) / steps as f32).sqrt())).sum::<f32>() / steps as f32
+            };
+            let mean_transmittance = mean(1024, &|cos| transmittance.at(cos));
+            let internal_reflectance = mean(32, &|cos| reflectance(alpha, cos, 1.0 / eta));
+            Coat { transmittance, mean_transmittance, internal_reflectance }
+        };
+        Self { model, eta, coats: (0..ALPHAS).map(coat).collect() }
+    }
+
+    /// Memory of the table.
+    pub fn bytes(&self) -> usize {
+        self.coats.len() * size_of::<Coat>()
+    }
+
+    /// The coat of this roughness.
+    pub fn at(&self, alpha: f32) -> Coat {
+        let (i, t) = alpha_place(alpha);
+        let (a, b) = (&self.coats[i], &self.coats[i + 1]);
+        let blend = |a: f32, b: f32| a + (b - a) * t;
+        Coat {
+            transmittance: CosTable::blend(&a.transmittance, &b.transmittance, t),
+            mean_transmittance: blend(a.mean_transmittance, b.mean_transmittance),
+            internal_reflectance: blend(a.internal_reflectance, b.internal_reflectance),
+        }
+    }
+}
+
+/// Directional reflectance of a rough surface for any Fresnel reflectance of Schlick's form, as a sum of two terms
+/// (B. Karis, "Real Shading in Unreal Engine 4", 2013).
+#[derive(Clone, Debug)]
+pub struct SplitSumTable {
+    base: Vec<CosTable>,
+    grazing: Vec<CosTable>,
+}
+
+impl SplitSumTable {
+    /// About 10 ms for GGX.
+    pub fn new(model: MicrofacetModel) -> Self {
+        let (mut base, mut grazing) = (Vec::new(), Vec::new());
+        for a in 0..ALPHAS {
+            let facets = Microfacets::new(model, [alpha_node(a); 2]);
+            let terms: [[f32; 2]; COSINES] = std::array::from_fn(|i| {
+                mean_over_facets(&facets, CosTable::node(i), |c| {
+                    let w = schlick_weight(c);
+                    [1.0 - w, w]
+                })
+            });
+            base.push(CosTable(terms.map(|t| t[0])));
+            grazing.push(CosTable(terms.map(|t| t[1])));
+        }
+        Self { base, grazing }
+    }
+
+    /// Memory of the table.
+    pub fn bytes(&self) -> usize {
+        (self.base.len() + self.grazing.len()) * size_of::<CosTable>()
+    }
+
+    /// Reflectance for the Fresnel reflectance `f0` at normal incidence and 1 at grazing.
+    pub fn reflectance(&self, alpha: f32, cos: f32, f0: Vec3) -> Vec3 {
+        let (i, t) = alpha_place(alpha);
+        let at = |tables: &[CosTable]| {
+            let (a, b) = (tables[i].at(cos), tables[i + 1].at(cos));
+            a + (b - a) * t
+        };
+        (f0 * at(&self.base) + Vec3::splat(at(&self.grazing))).clamp(Vec3::ZERO, Vec3::ONE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::fresnel_diffuse_reflectance;
+
+    #[test]
+    fn smooth_plastic_has_fresnels_values() {
+        let table = PlasticTable::new(MicrofacetModel::Ggx, 1.5);
+        let Coat { transmittance, internal_reflectance: inside, .. } = table.at(0.0);
+        assert!((transmittance.at(1.0) - 0.96).abs() < 1e-4);
+        assert!((inside - fresnel_diffuse_reflectance(1.0 / 1.5)).abs() < 0.01, "{inside}");
+        for i in 1..20 {
+            let cos = i as f32 / 20.0;
+            let exact = 1.0 - fresnel_dielectric(cos, 1.5).0;
+            assert!((transmittance.at(cos) - exact).abs() < 0.012, "{cos}: {} against {exact}", transmittance.at(cos));
+        }
+    }
+
+    #[test]
+    fn a_white_smooth_surface_reflects_all_and_a_rough_one_less() {
+        for model in [MicrofacetModel::Ggx, MicrofacetModel::Beckmann] {
+            let table = SplitSumTable::new(model);
+            for cos in [0.1, 0.5, 1.0] {
+                let smooth = table.reflectance(0.0, cos, Vec3::ONE).x;
+                let rough = table.reflectance(1.0, cos, Vec3::ONE).x;
+                assert!((smooth - 1.0).abs() < 0.01, "{model:?} {cos}: {smooth}");
+                assert!(rough < 0.95 && rough > 0.3, "{model:?} {cos}: {rough}");
+            }
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Pictures with a pyramid of smaller copies, read by nearest pixel, bilinear or trilinear interpolation.
+
+use super::{linear_to_srgb8, srgb8_to_linear};
+use photinus_geometry::{Vec2, Vec4};
+use photinus_scene::{Bitmap, BitmapPixels, TextureFilter, WrapMode};
+use std::sync::Arc;
+
+/// A picture and its pyramid: level 0 is the picture, each further level about half as wide and high, down to 1 x 1.
+#[derive(Clone, Debug)]
+pub struct MipMap {
+    levels: Vec<Arc<Bitmap>>,
+}
+
+/// RGBA of pixel (x, y), which must lie inside.
+#[inline]
+fn texel(bitmap: &Bitmap, x: u32, y: u32) -> Vec4 {
+    let i = y as usize * bitmap.width as usize + x as usize;
+    match &bitmap.pixels {
+        BitmapPixels::Rgba8 { data, srgb: true } => {
+            let [r, g, b, a] = data[i];
+            Vec4::new(srgb8_to_linear(r), srgb8_to_linear(g), srgb8_to_linear(b), f32::from(a) / 255.0)
+        }
+        BitmapPixels::Rgba8 { data, srgb: false } => {
+            let [r, g, b, a] = data[i];
+            Vec4::new(f32::from(r), f32::from(g), f32::from(b), f32::from(a)) / 255.0
+        }
+        BitmapPixels::RgbaF32(data) => Vec4::from_array(data[i]),
+    }
+}
+
+/// Whether the pixel array has the length that width and height promise.
+fn is_sound(bitmap: &Bitmap) -> bool {
+    let pixels = match &bitmap.pixels {
+        BitmapPixels::Rgba8 { data, .. } => data.len(),
+        BitmapPixels::RgbaF32(data) => data.len(),
+    };
+    bitmap.width >= 1 && bitmap.height >= 1 && pixels == bitmap.width as usize * bitmap.height as usize
+}
+
+/// The source pixels of pixel `i` of `to` when `from` pixels shrink to `to`, and the share of each: at most four, as
+/// no level is less than a third of the one above.
+fn box_taps(i: u32, from: u32, to: u32) -> impl Iterator<Item = (u32, f32)> {
+    let ratio = f64::from(from) / f64::from(to);
+    let (start, end) = (f64::from(i) * ratio, f64::from(i + 1) * ratio);
+    let last = (end.ceil() as u32).min(from);
+    (start as u32..last).filter_map(move |x| {
+        let overlap = end.min(f64::from(x) + 1.0) - start.max(f64::from(x));
+        (overlap > 1e-9).then_some((x, (overlap / ratio) as f32))
+    })
+}
+
+/// The next smaller level: every pixel is the mean of the area that it covers.
+fn halve(from: &Bitmap) -> Bitmap {
+    let (width, height) = ((from.width / 2).max(1), (from.height / 2).max(1));
+    let mut pixels = Vec::with_capacity(width as usize * height as usize);
+    for y in 0..height {
+        for x in 0..width {
+            let mut sum = Vec4::ZERO;
+            for (sy, wy) in box_taps(y, from.height, height) {
+                for (sx, wx) in box_taps(x, from.width, width) {
+                    sum += texel(from, sx, sy) * (wx * wy);
+                }
+            }
+            pixels.push(sum);
+        }
+    }
+    let byte = |v: f32| (v * 255.0 + 0.5).clamp(0.0, 255.0) as u8;
+    let pixels = match from.pixels {
+        BitmapPixels::Rgba8 { srgb: true, .. } => BitmapPixels::Rgba8 {
+            data: pixels
+                .iter()
+                .map(|p| [linear_to_srgb8(p.x), linear_to_srgb8(p.y), linear_to_srgb8(p.z), byte(p.w)])
+                .collect(),
+            srgb: true,
+        },
+        BitmapPixels::Rgba8 { srgb: false, .. } => BitmapPixels::Rgba8 {
+            data: pixels.iter().map(|p| [byte(p.x), byte(p.y), byte(p.z), byte(p.w)]).collect(),
+            srgb: false,
+        },
+        BitmapPixels::RgbaF32(_) => BitmapPixels::RgbaF32(pixels.iter().map(|p| p.to_array()).collect()),
+    };
+    Bitmap { width, height, pixels }
+}
+
+/// A coordinate folded into 0..=1 by the wrap mode; 0 where it is not finite.
+#[inline]
+fn wrap_unit(x: f32, wrap: WrapMode) -> f32 {
+    if !x.is_finite() {
+        return 0.0;
+    }
+    match wrap {
+        WrapMode::Repeat => x - x.floor(),
+        WrapMode::Mirror => {
+            let t = x - 2.0 * (0.5 * x).floor();
+            if t > 1.0 { 2.0 - t } else { t }
+        }
+        WrapMode::Clamp => x.clamp(0.0, 1.0),
+    }
+}
+
+/// A pixel index at most one outside `0..count` brought back by the wrap mode.
+#[inline]
+fn wrap_index(i: i32, count: u32, wrap: WrapMode) -> u32 {
+    match wrap {
+        WrapMode::Repeat => i.rem_euclid(count as i32) as u32,
+        WrapMode::Mirror | WrapMode::Clamp => i.clamp(0, count as i32 - 1) as u32,
+    }
+}
+
+impl MipMap {
+    /// Builds the pyramid; a bitmap whose arrays do not fit its size reads as mid-grey.
+    pub fn new(bitmap: &Arc<Bitmap>) -> Self {
+        if !is_sound(bitmap) {
+            return Self::grey();
+        }
+        let mut levels = vec![Arc::clone(bitmap)];
+        while let Some(last) = levels.last()
+            && (last.width > 1 || last.height > 1)
+        {
+            let next = halve(last);
+            levels.push(Arc::new(next));
+        }
+        Self { levels }
+    }
+
+    /// Only the picture itself, for textures that are never filtered.
+    pub fn without_pyramid(bitmap: &Arc<Bitmap>) -> Self {
+        if is_sound(bitmap) { Self { levels: vec![Arc::clone(bitmap)] } } else { Self::grey() }
+    }
+
+    fn grey() -> Self {
+        let pixels = BitmapPixels::RgbaF32(vec![[0.5, 0.5, 0.5, 1.0]]);
+        Self { levels: vec![Arc::new(Bitmap { width: 1, height: 1, pixels })] }
+    }
+
+    /// Columns and rows of the picture.
+    pub fn size(&self) -> [u32; 2] {
+        [self.levels[0].width, self.levels[0].height]
+    }
+
+    /// Bytes of the pyramid without the picture itself, which is shared with the scene.
+    pub fn bytes(&self) -> usize {
+        self.levels.iter().skip(1).map(|level| level.bytes()).sum()
+    }
+
+    /// RGBA at `uv` (v = 0: the bottom row), averaged over about `footprint`, the width of the pixel's footprint in
+    /// texture coordinates; 0: the full picture.
+    pub fn lookup(&self, uv: Vec2, footprint: f32, filter: TextureFilter, wrap: WrapMode) -> Vec4 {
+        if filter == TextureFilter::Nearest {
+            return nearest(&self.levels[0], uv, wrap);
+        }
+        let texels = footprint * self.levels[0].width.max(self.levels[0].height) as f32;
+        // The comparison is false for NaN: the base level then.
+        if !(texels > 1.0) {
+            return bilinear(&self.levels[0], uv, wrap);
+        }
+        let last = (self.levels.len() - 1) as f32;
+        let level = libm::log2f(texels).min(last);
+        let below = level.floor();
+        let fraction = level - below;
+        let fine = bilinear(&self.levels[below as usize], uv, wrap);
+        if fraction == 0.0 {
+            return fine;
+        }
+        let coarse = bilinear(&self.levels[(below as usize + 1).min(self.levels.len() - 1)], uv, wrap);
+        fine + (coarse - fine) * fraction
+    }
+}
+
+fn nearest(bitmap: &Bitmap, uv: Vec2, wrap: WrapMode) -> Vec4 {
+    let x = wrap_unit(uv.x, wrap) * bitmap.width as f32;
+    let y = (1.0 - wrap_unit(uv.y, wrap)) * bitmap.height as f32;
+    // v on a row's lower edge belongs to that row: rows are counted from the top, so round down from above.
+    let row = y.ceil() as i32 - 1;
+    let column = x as i32;
+    texel(bitmap, wrap_index(column, bitmap.width, wrap), wrap_index(row, bitmap.height, wrap))
+}
+
+fn bilinear(bitmap: &Bitmap, uv: Vec2, wrap: WrapMode) -> Vec4 {
+    let x = wrap_unit(uv.x, wrap) * bitmap.width as f32 - 0.5;
+    let y = (1.0 - wrap_unit(uv.y, wrap)) * bitmap.height as f32 - 0.5;
+    let (x0, y0) = (x.floor(), y.floor());
+    let (fx, fy) = (x - x0, y - y0);
+    let columns = [x0 as i32, x0 as i32 + 1].map(|i| wrap_index(i, bitmap.width, wrap));
+    let rows = [y0 as i32, y0 as i32 + 1].map(|i| wrap_index(i, bitmap.height, wrap));
+    let top = texel(bitmap, columns[0], rows[0]) * (1.0 - fx) + texel(bitmap, columns[1], rows[0]) * fx;
+    let bottom = texel(bitmap, columns[0], rows[1]) * (1.0 - fx) + texel(bitmap, columns[1], rows[1]) * fx;
+    top * (1.0 - fy) + bottom * fy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp(width: u32, height: u32) -> Arc<Bitmap> {
+        let data = (0..width * height).map(|i| [i as f32, (i % width) as f32, (i / width) as f32, 1.0]).collect();
+        Arc::new(Bitmap { width, height, pixels: BitmapPixels::RgbaF32(data) })
+    }
+
+    #[test]
+    fn the_bottom_row_is_at_v_zero() {
+        let map = MipMap::new(&ramp(4, 4));
+        let at = |u, v| map.lookup(Vec2::new(u, v), 0.0, TextureFilter::Nearest, WrapMode::Repeat);
+        assert_eq!(at(0.01, 0.01).x, 12.0);
+        assert_eq!(at(0.99, 0.99).x, 3.0);
+        assert_eq!(at(0.25, 0.25).x, 9.0, "a pixel owns its left and lower edge");
+        let middle = map.lookup(Vec2::new(0.125, 0.125), 0.0, TextureFilter::Bilinear, WrapMode::Repeat);
+        assert_eq!(middle.x, 12.0, "bilinear is exact in the middle of a pixel");
+    }
+
+    #[test]
+    fn bilinear_is_linear_between_centres() {
+        let map = MipMap::new(&ramp(8, 8));
+        for i in 0..40 {
+            let u = 0.0625 + 0.875 * i as f32 / 39.0;
+            let c = map.lookup(Vec2::new(u, 0.5), 0.0, TextureFilter::Bilinear, WrapMode::Clamp);
+            assert!((c.y - (u * 8.0 - 0.5)).abs() < 1e-4, "{u}: {c}");
+        }
+    }
+
+    #[test]
+    fn wrap_modes() {
+        let map = MipMap::new(&ramp(4, 1));
+        let at = |u: f32, wrap| map.lookup(Vec2::new(u, 0.5), 0.0, TextureFilter::Nearest, wrap).x;
+        for (u, repeat, mirror, clamp) in [
+            (0.1, 0.0, 0.0, 0.0),
+            (1.1, 0.0, 3.0, 3.0),
+            (-0.1, 3.0, 0.0, 0.0),
+            (2.3, 1.0, 1.0, 3.0),
+            (1.3, 1.0, 2.0, 3.0),
+        ] {
+            assert_eq!(at(u, WrapMode::Repeat), repeat, "{u}");
+            assert_eq!(at(u, WrapMode::Mirror), mirror, "{u}");
+            assert_eq!(at(u, WrapMode::Clamp), clamp, "{u}");
+        }
+    }
+
+    #[test]
+    fn every_level_keeps_the_mean() {
+        for (w, h) in [(7, 5), (8, 8), (1, 13), (300, 2), (1, 1)] {
+            let bitmap = ramp(w, h);
+            let map = MipMap::new(&bitmap);
+            let mean = (0..w * h).map(|i| i as f32).sum::<f32>() / (w * h) as f32;
+            let top = map.lookup(Vec2::new(0.3, 0.3), 1e9, TextureFilter::Bilinear, WrapMode::Repeat);
+            assert!((top.x - mean).abs() < 1e-3 * mean.max(1.0), "{w} x {h}: {top} against {mean}");
+        }
+    }
+
+    #[test]
+    fn srgb_bytes_are_averaged_as_light() {
+        let data = vec![[0, 0, 0, 0], [255, 255, 255, 255]];
+        let bitmap = Arc::new(Bitmap { width: 2, height: 1, pixels: BitmapPixels::Rgba8 { data, srgb: true } });
+        let c = MipMap::new(&bitmap).lookup(Vec2::ZERO, 1.0, TextureFilter::Bilinear, WrapMode::Repeat);
+        assert!((c.x - 0.5).abs() < 0.005 && (c.w - 0.5).abs() < 0.005, "{c}");
+    }
+
+    #[test]
+    fn odd_coordinates_are_safe() {
+        let map = MipMap::new(&ramp(5, 3));
+        let odd =
+            [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, 1e9, -0.0, 1.0, 16_777_217.0, f32::MIN_POSITIVE];
+        for u in odd {
+            for v in odd {
+                for footprint in odd {
+                    for wrap in [WrapMode::Repeat, WrapMode::Mirror, WrapMode::Clamp] {
+                        for filter in [TextureFilter::Nearest, TextureFilter::Bilinear] {
+                            assert!(map.lookup(Vec2::new(u, v), footprint, filter, wrap).is_finite());
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_bitmap_of_the_wrong_length_is_grey() {
+        let bitmap = Arc::new(Bitmap { width: 9, height: 9, pixels: BitmapPixels::RgbaF32(vec![]) });
+        let c = MipMap::new(&bitmap).lookup(Vec2::ZERO, 0.0, TextureFilter::Bilinear, WrapMode::Repeat);
+        assert_eq!(c.x, 0.5);
+    }
+}
