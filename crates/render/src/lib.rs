@@ -2,7 +2,30 @@
 //! tracer as ground truth.
 
 pub mod bsdf;
+mod camera;
+mod control;
+mod counters;
+mod direct;
+mod eye_pass;
+mod film;
+mod film_filter;
+mod light;
+mod maps;
+mod photon_pass;
+mod pilot;
+mod renderer;
+mod settings;
 mod surface;
 pub mod texture;
+mod trace;
+mod world;
 
+pub use camera::{CameraModel, CameraRay};
+pub use control::{Cancelled, Observer, Phase, Silent};
+pub use counters::{Counters, PhotonCounts, PhotonPower, RayCounts};
+pub use film::{Aov, FilmLayout};
+pub use light::{LightSample, Lights, PhotonStart, VisibleRegion};
+pub use renderer::{RenderError, Renderer};
+pub use settings::{Mode, Settings};
 pub use surface::SurfacePoint;
+pub use world::{Compiled, World};

@@ -22,6 +22,8 @@ pub struct SurfacePoint {
     pub color: Vec3,
     /// Width of the pixel's footprint in texture coordinates; 0: unknown, no filtering beyond bilinear.
     pub uv_footprint: f32,
+    /// How far off the surface a ray must start so that rounding cannot make it hit the surface again, scene units.
+    pub offset: f32,
     /// Index of the shape.
     pub shape: u32,
     /// Primitive id.
@@ -29,6 +31,13 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// Where a ray along `dir` starts: off the surface, on the side that `dir` points to.
+    #[inline]
+    pub fn ray_origin(&self, dir: Vec3) -> Vec3 {
+        let step = self.geometric_normal * self.offset;
+        self.position + if self.geometric_normal.dot(dir) >= 0.0 { step } else { -step }
+    }
+
     /// Where textures are read for this point.
     #[inline]
     pub fn lookup(&self) -> TextureLookup {

@@ -189,6 +189,21 @@ impl Bsdf {
         value * bounded_ratio(1.0, self.ng.dot(wi).abs())
     }
 
+    /// Value without the cosine, where no lobe of `set` depends on direction: what a photon estimate may take out of
+    /// its sum. None where some lobe does, or where there is none.
+    pub fn constant(&self, set: LobeSet) -> Option<Vec3> {
+        let mut sum = None;
+        for lobe in self.lobes().iter().filter(|lobe| lobe.set.intersects(set)) {
+            match lobe.kind {
+                LobeKind::Lambert if self.frames[usize::from(lobe.frame)].bump_alpha_sq == 0.0 => {
+                    sum = Some(sum.unwrap_or(Vec3::ZERO) + lobe.weight * std::f32::consts::FRAC_1_PI);
+                }
+                _ => return None,
+            }
+        }
+        sum
+    }
+
     /// Density over solid angle of [`sample`](Self::sample) with the same set, single directions left out.
     pub fn pdf(&self, set: LobeSet, wi: Vec3) -> f32 {
         let (mut sum, mut total) = (0.0, 0.0);

@@ -1,0 +1,131 @@
+//! The thesis's renderer: one photon map with all light in it, an estimate at every hit, reflected and transmitted
+//! children both followed to a level limit, no shadow rays (Figure 3: FireViewerRay, CalculateRayColour).
+
+use crate::bsdf::{LobeSet, TransportMode};
+use crate::control::{Cancelled, Observer};
+use crate::counters::{Counters, INSTRUMENTED};
+use crate::eye_pass::{EyePass, Tile};
+use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
+use crate::trace::Tracer;
+use photinus_geometry::{Ray, Vec3};
+use photinus_num::{Sampler, StreamKind};
+use photinus_photons::GatherQuery;
+
+/// Levels followed where neither the scene nor the user limits them: 2^8 rays a pixel at the very most.
+pub(crate) const DEFAULT_LEVELS: u32 = 8;
+
+struct Node {
+    ray: Ray,
+    throughput: Vec3,
+    pixel: u32,
+    level: u32,
+    /// Number in the pixel's binary tree of rays, the root 1: it picks the random numbers.
+    number: u64,
+    width: f32,
+    spread: f32,
+}
+
+impl EyePass<'_> {
+    /// As [`EyePass::run`], by the thesis's recursion.
+    pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
+        self.run_tiles(film, observer, |x0, y0, w, h, index, tile, counters| {
+            self.direct_tile(maps, [x0, y0, w, h], index, tile, counters);
+        })
+    }
+
+    fn direct_tile(&self, maps: &Maps, window: [u32; 4], index: u32, tile: &mut Tile, counters: &mut Counters) {
+        let [x0, y0, w, h] = window;
+        let instrumented = index as usize % INSTRUMENTED == 0;
+        let mut tracer = Tracer::new(self.world, instrumented);
+        let (mut rays, mut hits) = (Vec::new(), Vec::new());
+        let mut scratch = EstimateScratch::default();
+        let mut found: Vec<Estimated> = Vec::new();
+        for sample in 0..self.spp {
+            let mut nodes: Vec<Node> = self
+                .camera_paths(x0, y0, w, h, sample, tile)
+                .into_iter()
+                .map(|p| Node {
+                    ray: p.ray,
+                    throughput: p.throughput,
+                    pixel: p.pixel,
+                    level: 0,
+                    number: 1,
+                    width: p.width,
+                    spread: p.spread,
+                })
+                .collect();
+            counters.rays.camera += nodes.len() as u64;
+            while !nodes.is_empty() {
+                rays.clear();
+                rays.extend(nodes.iter().map(|n| n.ray));
+                let mut draws: Vec<Option<Sampler>> = nodes.iter().map(|_| None).collect();
+                tracer.closest(&rays, &mut hits, counters, |i| {
+                    draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], x0, y0, w, sample)).next_1d()
+                });
+                let mut estimates = Vec::new();
+                let mut next = Vec::new();
+                for (node, hit) in nodes.iter().zip(&hits) {
+                    if !hit.is_hit() {
+                        let radiance = self.lights.environment_radiance(node.ray.dir);
+                        tile.emitted(node.pixel, node.throughput * radiance);
+                        continue;
+                    }
+                    let width = node.width + node.spread * hit.t;
+                    let point = self.world.surface(&node.ray, hit, width);
+                    let wo = -node.ray.dir;
+                    tile.emitted(node.pixel, node.throughput * self.world.emitted(&point, wo));
+                    let material = self.world.shapes[point.shape as usize].material;
+                    let bsdf = self.world.materials.resolve(material, &point, wo);
+                    if node.level == 0 {
+                        self.first_surface(node.pixel, hit.t, &point, &bsdf, material.0, tile);
+                    }
+                    if bsdf.has(LobeSet::GATHER) {
+                        let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
+                        estimates.push(Estimate {
+                            query: GatherQuery {
+                                position: point.position,
+                                radius: 0.0,
+                                normal: point.geometric_normal * side,
+                                max_depth: 127,
+                            },
+                            bsdf,
+                            throughput: node.throughput,
+                            path: node.pixel,
+                        });
+                    }
+                    if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {
+                        continue;
+                    }
+                    let mut sampler = self.node_sampler(node, x0, y0, w, sample);
+                    sampler.start_vertex();
+                    for (child, side) in [LobeSet::REFLECTION, LobeSet::TRANSMISSION].into_iter().enumerate() {
+                        let (choice, u) = (sampler.next_1d(), sampler.next_2d());
+                        let set = LobeSet::CONTINUE & side;
+                        let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { continue };
+                        next.push(Node {
+                            ray: Ray::new(point.ray_origin(s.wi), s.wi),
+                            throughput: node.throughput * s.weight,
+                            pixel: node.pixel,
+                            level: node.level + 1,
+                            number: node.number * 2 + child as u64,
+                            width,
+                            spread: node.spread,
+                        });
+                    }
+                }
+                counters.rays.specular += next.len() as u64;
+                maps.global.estimate(&estimates, maps.knn, instrumented, &mut scratch, &mut found, counters);
+                for (e, found) in estimates.iter().zip(&found) {
+                    tile.estimated(e.path, found);
+                }
+                nodes = next;
+            }
+        }
+    }
+
+    fn node_sampler(&self, node: &Node, x0: u32, y0: u32, w: u32, sample: u32) -> Sampler {
+        let (x, y) = (self.crop[0] + x0 + node.pixel % w, self.crop[1] + y0 + node.pixel / w);
+        let stream = node.number << 40 | u64::from(y) << 20 | u64::from(x);
+        Sampler::new(self.seed, StreamKind::Eye, stream, self.pass * self.spp + sample)
+    }
+}

@@ -1,0 +1,531 @@
+//! The eye pass: rays from the camera, direct light by shadow rays, and either photons or further path tracing for
+//! the rest (thesis, Figure 3: FireViewerRay, CalculateRayColour).
+
+use crate::SurfacePoint;
+use crate::bsdf::{Bsdf, LobeSet, TransportMode};
+use crate::camera::CameraModel;
+use crate::control::{Cancelled, Observer};
+use crate::counters::{Counters, INSTRUMENTED};
+use crate::film::{Aov, FilmLayout};
+use crate::film_filter::FilterSampler;
+use crate::light::Lights;
+use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
+use crate::trace::{Tracer, shadow_ray};
+use crate::world::World;
+use photinus_geometry::{Ray, Vec3};
+use photinus_num::{Sampler, StreamKind};
+use photinus_photons::GatherQuery;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Edge of a tile in pixels; fixed, so that batches do not depend on the machine.
+pub(crate) const TILE: u32 = 32;
+
+/// Everything an eye pass needs.
+pub(crate) struct EyePass<'a> {
+    pub world: &'a World,
+    pub lights: &'a Lights,
+    pub camera: &'a CameraModel,
+    pub filter: &'a FilterSampler,
+    pub layout: &'a FilmLayout,
+    /// Window of the film: x, y, width, height.
+    pub crop: [u32; 4],
+    pub seed: u64,
+    pub pass: u32,
+    pub spp: u32,
+    /// Most edges of a path, camera to light.
+    pub max_depth: u32,
+    /// None: light after the first diffuse surface is path traced.
+    pub maps: Option<&'a Maps>,
+    /// A ray from each diffuse surface looks for lights too, weighted against the shadow ray.
+    pub probe: bool,
+}
+
+/// Which picture a contribution belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Emitted,
+    Direct,
+    Caustic,
+    Indirect,
+}
+
+pub(crate) struct Path {
+    pub ray: Ray,
+    pub throughput: Vec3,
+    sampler: Sampler,
+    /// Pixel within the tile.
+    pub pixel: u32,
+    /// Edges so far.
+    depth: u32,
+    /// Pixel's cone: width at the ray's origin and growth.
+    pub width: f32,
+    pub spread: f32,
+    /// Density of the last direction and where it started; infinite after a mirror or the camera.
+    last_pdf: f32,
+    last_position: Vec3,
+    /// Diffuse bounces, and mirror-like ones after the last of them.
+    diffuse: u32,
+    mirrors: u32,
+    /// Undoes the scaling of radiance at refraction, for roulette.
+    eta_sq: f32,
+    /// Sees lights only, then ends.
+    probe: bool,
+}
+
+impl Path {
+    fn part(&self) -> Part {
+        match (self.probe, self.diffuse, self.mirrors) {
+            (true, ..) => Part::Direct,
+            (_, 0, _) if self.last_pdf.is_infinite() => Part::Emitted,
+            (_, 0, _) | (_, 1, 0) => Part::Direct,
+            (_, 1, _) => Part::Caustic,
+            _ => Part::Indirect,
+        }
+    }
+}
+
+struct Shadow {
+    ray: Ray,
+    pixel: u32,
+    diffuse: (Vec3, Part),
+    glossy: (Vec3, Part),
+}
+
+/// One tile's pixels and buffers.
+pub(crate) struct Tile<'a> {
+    out: Vec<f32>,
+    weights: Vec<f32>,
+    layout: &'a FilmLayout,
+}
+
+impl Tile<'_> {
+    fn add(&mut self, pixel: u32, part: Part, radiance: Vec3) {
+        if !radiance.is_finite() {
+            return;
+        }
+        let aov = match part {
+            Part::Emitted => Aov::Emitted,
+            Part::Direct => Aov::Direct,
+            Part::Caustic => Aov::Caustic,
+            Part::Indirect => Aov::Indirect,
+        };
+        let value = radiance * self.weights[pixel as usize];
+        self.add_at(pixel, 0, value);
+        if let Some(offset) = self.layout.offset(aov) {
+            self.add_at(pixel, offset, value);
+        }
+    }
+
+    fn add_at(&mut self, pixel: u32, offset: usize, value: Vec3) {
+        let start = pixel as usize * self.layout.channels() + offset;
+        for (o, v) in self.out[start..start + 3].iter_mut().zip(value.to_array()) {
+            *o += v;
+        }
+    }
+
+    /// Light that a surface or the sky sends out by itself.
+    pub fn emitted(&mut self, pixel: u32, radiance: Vec3) {
+        self.add(pixel, Part::Emitted, radiance);
+    }
+
+    /// An estimate from a map that holds all light.
+    pub fn estimated(&mut self, pixel: u32, found: &Estimated) {
+        self.add(pixel, Part::Indirect, found.radiance);
+        self.add_scalar(pixel, Aov::PhotonDensity, found.density);
+    }
+
+    fn add_scalar(&mut self, pixel: u32, aov: Aov, value: f32) {
+        if let Some(offset) = self.layout.offset(aov) {
+            self.out[pixel as usize * self.layout.channels() + offset] += value;
+        }
+    }
+}
+
+impl EyePass<'_> {
+    /// Renders one pass into `film` (channels of each pixel of the window, row by row), means over the samples of
+    /// the pass. Where it is stopped, finished tiles are there.
+    pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
+        self.run_tiles(film, observer, |x0, y0, w, h, index, tile, counters| {
+            let instrumented = index as usize % INSTRUMENTED == 0;
+            let mut tracer = Tracer::new(self.world, instrumented);
+            for sample in 0..self.spp {
+                let paths = self.camera_paths(x0, y0, w, h, sample, tile);
+                counters.rays.camera += paths.len() as u64;
+                let estimates = self.follow(paths, tile, &mut tracer, counters);
+                self.gather(&estimates, instrumented, tile, counters);
+            }
+        })
+    }
+
+    /// Renders all tiles by `render(x0, y0, width, height, index, tile, counters)` and puts them into `film`.
+    pub(crate) fn run_tiles(
+        &self,
+        film: &mut [f32],
+        observer: &dyn Observer,
+        render: impl Fn(u32, u32, u32, u32, u32, &mut Tile, &mut Counters) + Sync,
+    ) -> Result<Counters, Cancelled> {
+        let [_, _, width, height] = self.crop;
+        let (across, down) = (width.div_ceil(TILE), height.div_ceil(TILE));
+        let tiles = across * down;
+        let done = AtomicU64::new(0);
+        let place = |tile: u32| {
+            let (x0, y0) = (tile % across * TILE, tile / across * TILE);
+            (x0, y0, TILE.min(width - x0), TILE.min(height - y0))
+        };
+        let results: Vec<Option<(Vec<f32>, Counters)>> = (0..tiles)
+            .into_par_iter()
+            .map(|index| {
+                if observer.cancelled() {
+                    return None;
+                }
+                let (x0, y0, w, h) = place(index);
+                let pixels = (w * h) as usize;
+                let mut tile = Tile {
+                    out: vec![0.0; pixels * self.layout.channels()],
+                    weights: vec![1.0; pixels],
+                    layout: self.layout,
+                };
+                let mut counters = Counters::default();
+                render(x0, y0, w, h, index, &mut tile, &mut counters);
+                self.finish(&mut tile);
+                observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(tiles));
+                Some((tile.out, counters))
+            })
+            .collect();
+        let mut counters = Counters::default();
+        let channels = self.layout.channels();
+        let mut complete = true;
+        for (index, result) in results.into_iter().enumerate() {
+            let Some((pixels, c)) = result else {
+                complete = false;
+                continue;
+            };
+            counters += c;
+            let (x0, y0, w, h) = place(index as u32);
+            let row = w as usize * channels;
+            for y in 0..h as usize {
+                let to = ((y0 as usize + y) * width as usize + x0 as usize) * channels;
+                film[to..to + row].copy_from_slice(&pixels[y * row..(y + 1) * row]);
+            }
+        }
+        if complete { Ok(counters) } else { Err(Cancelled) }
+    }
+
+    pub(crate) fn camera_paths(&self, x0: u32, y0: u32, w: u32, h: u32, sample: u32, tile: &mut Tile) -> Vec<Path> {
+        let mut paths = Vec::with_capacity((w * h) as usize);
+        for pixel in 0..w * h {
+            let (x, y) = (self.crop[0] + x0 + pixel % w, self.crop[1] + y0 + pixel / w);
+            let stream = u64::from(y) << 32 | u64::from(x);
+            let mut sampler = Sampler::new(self.seed, StreamKind::Eye, stream, self.pass * self.spp + sample);
+            let ([dx, dy], weight) = self.filter.sample(sampler.next_2d());
+            tile.weights[pixel as usize] = weight;
+            let film = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
+            let start = self.camera.ray(film, &mut sampler);
+            paths.push(Path {
+                ray: start.ray,
+                throughput: Vec3::ONE,
+                sampler,
+                pixel,
+                depth: 0,
+                width: start.width,
+                spread: start.spread,
+                last_pdf: f32::INFINITY,
+                last_position: start.ray.origin,
+                diffuse: 0,
+                mirrors: 0,
+                eta_sq: 1.0,
+                probe: false,
+            });
+        }
+        paths
+    }
+
+    /// Follows all paths of a batch to their ends; returns the estimates that they ask for.
+    fn follow(
+        &self,
+        mut paths: Vec<Path>,
+        tile: &mut Tile,
+        tracer: &mut Tracer,
+        counters: &mut Counters,
+    ) -> Vec<Estimate> {
+        let mut estimates = Vec::new();
+        let (mut rays, mut hits) = (Vec::new(), Vec::new());
+        let (mut shadows, mut shadow_rays, mut visible) = (Vec::new(), Vec::new(), Vec::new());
+        while !paths.is_empty() {
+            rays.clear();
+            rays.extend(paths.iter().map(|p| p.ray));
+            tracer.closest(&rays, &mut hits, counters, |i| paths[i].sampler.next_1d());
+            let mut next = Vec::with_capacity(paths.len());
+            shadows.clear();
+            for (path, hit) in paths.into_iter().zip(&hits) {
+                if hit.is_hit() {
+                    let width = path.width + path.spread * hit.t;
+                    let point = self.world.surface(&path.ray, hit, width);
+                    self.shade(path, hit.t, &point, tile, &mut next, &mut shadows, &mut estimates);
+                } else {
+                    self.escape(&path, tile);
+                }
+            }
+            shadow_rays.clear();
+            shadow_rays.extend(shadows.iter().map(|s: &Shadow| s.ray));
+            counters.rays.shadow += shadow_rays.len() as u64;
+            tracer.visibility(&shadow_rays, &mut visible, counters);
+            for (shadow, &share) in shadows.iter().zip(&visible) {
+                if share > 0.0 {
+                    tile.add(shadow.pixel, shadow.diffuse.1, shadow.diffuse.0 * share);
+                    tile.add(shadow.pixel, shadow.glossy.1, shadow.glossy.0 * share);
+                }
+            }
+            let probes = next.iter().filter(|p: &&Path| p.probe).count() as u64;
+            counters.rays.gather += probes;
+            counters.rays.specular += next.len() as u64 - probes;
+            paths = next;
+        }
+        estimates
+    }
+
+    /// A path leaves the scene.
+    fn escape(&self, path: &Path, tile: &mut Tile) {
+        if path.depth + 1 > self.max_depth || (path.depth == 0 && self.world.integrator.hide_emitters) {
+            return;
+        }
+        let radiance = self.lights.environment_radiance(path.ray.dir);
+        if radiance == Vec3::ZERO {
+            return;
+        }
+        let weight = if path.last_pdf.is_infinite() {
+            1.0
+        } else {
+            power_heuristic(path.last_pdf, self.lights.environment_pdf(path.ray.dir))
+        };
+        tile.add(path.pixel, path.part(), path.throughput * radiance * weight);
+    }
+
+    fn shade(
+        &self,
+        mut path: Path,
+        distance: f32,
+        point: &SurfacePoint,
+        tile: &mut Tile,
+        next: &mut Vec<Path>,
+        shadows: &mut Vec<Shadow>,
+        estimates: &mut Vec<Estimate>,
+    ) {
+        path.depth += 1;
+        path.width += path.spread * distance;
+        let wo = -path.ray.dir;
+        let emitted = self.world.emitted(point, wo);
+        if emitted != Vec3::ZERO && !(path.depth == 1 && self.world.integrator.hide_emitters) {
+            let weight = if path.last_pdf.is_infinite() {
+                1.0
+            } else {
+                power_heuristic(path.last_pdf, self.lights.area_pdf(self.world, path.last_position, point))
+            };
+            tile.add(path.pixel, path.part(), path.throughput * emitted * weight);
+        }
+        if path.probe {
+            return;
+        }
+        let material = self.world.shapes[point.shape as usize].material;
+        let bsdf = self.world.materials.resolve(material, point, wo);
+        if path.depth == 1 {
+            self.first_surface(path.pixel, distance, point, &bsdf, material.0, tile);
+        }
+        if path.depth >= self.max_depth {
+            return;
+        }
+        path.sampler.start_vertex();
+        if bsdf.has(LobeSet::NON_DELTA) {
+            self.light(&mut path, point, &bsdf, shadows);
+        }
+        if self.maps.is_some() && bsdf.has(LobeSet::GATHER) {
+            self.ask(&mut path, point, &bsdf, wo, next, estimates);
+        }
+        self.bounce(path, point, &bsdf, next);
+    }
+
+    /// Direct light by a shadow ray to one light.
+    fn light(&self, path: &mut Path, point: &SurfacePoint, bsdf: &Bsdf, shadows: &mut Vec<Shadow>) {
+        let (u, choice) = (path.sampler.next_2d(), path.sampler.next_1d());
+        let Some(light) = self.lights.sample(self.world, point.position, choice, u) else { return };
+        let part = |set: LobeSet, diffuse: bool| {
+            if !bsdf.has(set & LobeSet::NON_DELTA) {
+                return (Vec3::ZERO, Part::Direct);
+            }
+            let value = bsdf.eval(set, light.dir, TransportMode::Radiance);
+            let rival = if light.delta || (diffuse && self.maps.is_some() && !self.probe) {
+                0.0
+            } else if self.maps.is_some() {
+                bsdf.pdf(set, light.dir)
+            } else {
+                bsdf.pdf(LobeSet::ALL, light.dir)
+            };
+            let weight = power_heuristic(light.pdf, rival);
+            let part = match (path.diffuse, diffuse) {
+                (0, _) => Part::Direct,
+                (1, false) => Part::Caustic,
+                _ => Part::Indirect,
+            };
+            (path.throughput * value * light.radiance * (weight / light.pdf), part)
+        };
+        let (diffuse, glossy) = (part(LobeSet::GATHER, true), part(LobeSet::CONTINUE, false));
+        if diffuse.0.max_element() > 0.0 || glossy.0.max_element() > 0.0 {
+            shadows.push(Shadow {
+                ray: shadow_ray(point, light.dir, light.target),
+                pixel: path.pixel,
+                diffuse,
+                glossy,
+            });
+        }
+    }
+
+    /// Asks for a photon estimate, and sends a probe for direct light where those are on.
+    fn ask(
+        &self,
+        path: &mut Path,
+        point: &SurfacePoint,
+        bsdf: &Bsdf,
+        wo: Vec3,
+        next: &mut Vec<Path>,
+        estimates: &mut Vec<Estimate>,
+    ) {
+        let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
+        estimates.push(Estimate {
+            query: GatherQuery {
+                position: point.position,
+                radius: 0.7 * path.width,
+                normal: point.geometric_normal * side,
+                max_depth: (self.max_depth - path.depth).min(127),
+            },
+            bsdf: *bsdf,
+            throughput: path.throughput,
+            path: path.pixel,
+        });
+        if !self.probe {
+            return;
+        }
+        let (choice, u) = (path.sampler.next_1d(), path.sampler.next_2d());
+        if let Some(s) = bsdf.sample(LobeSet::GATHER, choice, u, TransportMode::Radiance) {
+            next.push(Path {
+                ray: Ray::new(point.ray_origin(s.wi), s.wi),
+                throughput: path.throughput * s.weight,
+                sampler: path.sampler.clone(),
+                last_pdf: s.pdf,
+                last_position: point.position,
+                probe: true,
+                ..*path
+            });
+        }
+    }
+
+    /// Continues a path: mirror-like lobes only where photons give the rest.
+    fn bounce(&self, mut path: Path, point: &SurfacePoint, bsdf: &Bsdf, next: &mut Vec<Path>) {
+        let set = if self.maps.is_some() { LobeSet::CONTINUE } else { LobeSet::ALL };
+        if !bsdf.has(set) {
+            return;
+        }
+        let choice = path.sampler.next_1d();
+        let survival = path.sampler.next_1d();
+        let u = path.sampler.next_2d();
+        let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { return };
+        let throughput = path.throughput * s.weight;
+        let strength = throughput.max_element() * path.eta_sq * s.eta * s.eta;
+        // Weak reflections, as of a coat over a diffuse base, are followed in proportion; the eye forgives noise
+        // there more than it forgives their absence.
+        let keep = match path.depth {
+            0..=3 => (3.0 * strength).min(1.0),
+            _ => strength.min(0.95),
+        };
+        if !(survival < keep) {
+            return;
+        }
+        path.throughput = throughput / keep;
+        path.eta_sq *= s.eta * s.eta;
+        if s.kind.intersects(LobeSet::GATHER) {
+            path.diffuse += 1;
+            path.mirrors = 0;
+            path.spread = path.spread.max(0.1);
+        } else if path.diffuse > 0 {
+            path.mirrors += 1;
+        }
+        path.last_pdf = if s.kind.intersects(LobeSet::DELTA) { f32::INFINITY } else { s.pdf };
+        path.last_position = point.position;
+        path.ray = Ray::new(point.ray_origin(s.wi), s.wi);
+        next.push(path);
+    }
+
+    pub(crate) fn first_surface(
+        &self,
+        pixel: u32,
+        distance: f32,
+        point: &SurfacePoint,
+        bsdf: &Bsdf,
+        material: u32,
+        tile: &mut Tile,
+    ) {
+        if let Some(offset) = self.layout.offset(Aov::Albedo) {
+            tile.add_at(pixel, offset, bsdf.albedo(LobeSet::ALL));
+        }
+        if let Some(offset) = self.layout.offset(Aov::Normal) {
+            tile.add_at(pixel, offset, bsdf.shading_normal());
+        }
+        tile.add_scalar(pixel, Aov::Depth, distance);
+        // Ids are labels: those of the first sample of the first pass stand for the pixel.
+        if self.pass == 0 {
+            for (aov, id) in [(Aov::ObjectId, point.shape + 1), (Aov::MaterialId, material + 1)] {
+                if let Some(offset) = self.layout.offset(aov) {
+                    let value = &mut tile.out[pixel as usize * self.layout.channels() + offset];
+                    if *value == 0.0 {
+                        *value = id as f32;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Answers the estimates of a batch from the maps.
+    fn gather(&self, estimates: &[Estimate], instrumented: bool, tile: &mut Tile, counters: &mut Counters) {
+        let Some(maps) = self.maps else { return };
+        let mut scratch = EstimateScratch::default();
+        let mut out: Vec<Estimated> = Vec::new();
+        maps.global.estimate(estimates, maps.knn, instrumented, &mut scratch, &mut out, counters);
+        for (e, found) in estimates.iter().zip(&out) {
+            tile.add(e.path, Part::Indirect, found.radiance);
+            tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
+        }
+        if let Some(caustic) = &maps.caustic {
+            caustic.estimate(estimates, maps.knn, instrumented, &mut scratch, &mut out, counters);
+            for (e, found) in estimates.iter().zip(&out) {
+                tile.add(e.path, Part::Caustic, found.radiance);
+                tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
+            }
+        }
+    }
+
+    /// Means over the samples, and values of a pass that are no means.
+    fn finish(&self, tile: &mut Tile) {
+        let scale = 1.0 / self.spp as f32;
+        for pixel in tile.out.chunks_exact_mut(self.layout.channels()) {
+            let ids = [Aov::ObjectId, Aov::MaterialId]
+                .map(|aov| self.layout.offset(aov).map(|offset| (offset, pixel[offset])));
+            pixel.iter_mut().for_each(|v| *v *= scale);
+            for (offset, id) in ids.into_iter().flatten() {
+                pixel[offset] = id;
+            }
+            if let Some(offset) = self.layout.offset(Aov::Variance) {
+                let luminance = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
+                pixel[offset] = luminance * luminance;
+            }
+        }
+    }
+}
+
+/// Veach's power heuristic with exponent 2 for one sample of each of two strategies.
+fn power_heuristic(mine: f32, other: f32) -> f32 {
+    if other == 0.0 {
+        return 1.0;
+    }
+    let ratio = other / mine;
+    1.0 / (1.0 + ratio * ratio)
+}

@@ -1,0 +1,11 @@
+//! Lights: what they send to a point, what they send out as photons, and how likely each choice is.
+
+mod alias;
+mod area;
+mod environment;
+mod lights;
+mod sphere;
+
+pub(crate) use area::uniform_cone;
+pub use lights::{LightSample, Lights, PhotonStart, VisibleRegion};
+pub(crate) use sphere::cone as sphere_cone;

@@ -1,0 +1,261 @@
+//! The photon pass: photons leave the lights, scatter, and are stored where they land (thesis, Figure 3: FirePhoton,
+//! StorePhoton).
+
+use crate::SurfacePoint;
+use crate::bsdf::{Bsdf, LobeSet, TransportMode};
+use crate::control::{Cancelled, Observer};
+use crate::counters::{Counters, INSTRUMENTED};
+use crate::light::{Lights, VisibleRegion};
+use crate::trace::Tracer;
+use crate::world::World;
+use photinus_geometry::{Frame, Ray, Vec3};
+use photinus_num::{Sampler, StreamKind};
+use photinus_photons::Photon;
+use rayon::prelude::*;
+use std::f32::consts::TAU;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Photons of one batch; fixed, so that batches do not depend on the machine.
+const CHUNK: u32 = 2048;
+
+/// Which photons are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Keep {
+    /// All of them, in one map: estimates give all of the light.
+    All,
+    /// Those whose light no shadow ray finds: after a diffuse bounce in the global map, after mirror-like bounces only
+    /// in the caustic map.
+    Indirect,
+}
+
+/// One photon pass.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PhotonPass {
+    pub seed: u64,
+    pub kind: StreamKind,
+    pub pass: u32,
+    pub count: u32,
+    /// Most edges of a photon's path.
+    pub max_depth: u32,
+    pub keep: Keep,
+}
+
+/// Stored photons, in the order of emission.
+#[derive(Default)]
+pub(crate) struct StoredPhotons {
+    pub global: Vec<Photon>,
+    pub caustic: Vec<Photon>,
+}
+
+struct Walk {
+    ray: Ray,
+    flux: Vec3,
+    depth: u32,
+    /// Every bounce so far was mirror-like.
+    specular_only: bool,
+    sampler: Sampler,
+}
+
+impl PhotonPass {
+    /// Sends out the photons. Equal arguments give equal photons in equal order on any number of threads.
+    pub fn run(
+        &self,
+        world: &World,
+        lights: &Lights,
+        observer: &dyn Observer,
+    ) -> Result<(StoredPhotons, Counters), Cancelled> {
+        let chunks = self.count.div_ceil(CHUNK);
+        let done = AtomicU64::new(0);
+        let results: Vec<Option<(StoredPhotons, Counters)>> = (0..chunks)
+            .into_par_iter()
+            .map(|chunk| {
+                if observer.cancelled() {
+                    return None;
+                }
+                let result = self.chunk(world, lights, chunk);
+                observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(chunks));
+                Some(result)
+            })
+            .collect();
+        let mut all = StoredPhotons::default();
+        let mut counters = Counters::default();
+        let results: Option<Vec<_>> = results.into_iter().collect();
+        let results = results.ok_or(Cancelled)?;
+        all.global.reserve_exact(results.iter().map(|(p, _)| p.global.len()).sum());
+        all.caustic.reserve_exact(results.iter().map(|(p, _)| p.caustic.len()).sum());
+        for (photons, c) in results {
+            all.global.extend(photons.global);
+            all.caustic.extend(photons.caustic);
+            counters += c;
+        }
+        Ok((all, counters))
+    }
+
+    fn chunk(&self, world: &World, lights: &Lights, chunk: u32) -> (StoredPhotons, Counters) {
+        let mut stored = StoredPhotons::default();
+        let mut counters = Counters::default();
+        let mut tracer = Tracer::new(world, chunk as usize % INSTRUMENTED == 0);
+        let first = chunk * CHUNK;
+        let mut walks = Vec::with_capacity(CHUNK as usize);
+        for index in first..(first + CHUNK).min(self.count) {
+            let mut sampler = Sampler::new(self.seed, self.kind, u64::from(self.pass), index);
+            counters.photons.emitted += 1;
+            if let Some(start) = lights.emit(world, &mut sampler) {
+                let flux = start.flux / self.count as f32;
+                add(&mut counters.photons.power.emitted, flux);
+                walks.push(Walk { ray: start.ray, flux, depth: 0, specular_only: true, sampler });
+            }
+        }
+        counters.rays.emitted += walks.len() as u64;
+        let (mut rays, mut hits) = (Vec::new(), Vec::new());
+        while !walks.is_empty() {
+            rays.clear();
+            rays.extend(walks.iter().map(|w| w.ray));
+            counters.rays.photon += rays.len() as u64;
+            tracer.closest(&rays, &mut hits, &mut counters, |i| walks[i].sampler.next_1d());
+            let mut slot = 0;
+            walks.retain_mut(|walk| {
+                let hit = hits[slot];
+                slot += 1;
+                if !hit.is_hit() {
+                    counters.photons.escaped += 1;
+                    add(&mut counters.photons.power.escaped, walk.flux);
+                    return false;
+                }
+                let point = world.surface(&walk.ray, &hit, 0.0);
+                self.land(world, lights, walk, &point, &mut stored, &mut counters)
+            });
+        }
+        (stored, counters)
+    }
+
+    /// What a photon does where it lands: it may be stored, and goes on or ends. Returns whether it goes on.
+    fn land(
+        &self,
+        world: &World,
+        lights: &Lights,
+        walk: &mut Walk,
+        point: &SurfacePoint,
+        stored: &mut StoredPhotons,
+        counters: &mut Counters,
+    ) -> bool {
+        walk.depth += 1;
+        walk.sampler.start_vertex();
+        let wo = -walk.ray.dir;
+        let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, point, wo);
+        if bsdf.has(LobeSet::GATHER) {
+            self.store(walk, point, wo, &bsdf, stored, counters);
+        }
+        if walk.depth >= self.max_depth {
+            counters.photons.cut += 1;
+            add(&mut counters.photons.power.cut, walk.flux);
+            return false;
+        }
+        let choice = walk.sampler.next_1d();
+        let survival = walk.sampler.next_1d();
+        let u = walk.sampler.next_2d();
+        let guided = outside(lights.region(), point.position) && lights.aims() && bsdf.has(LobeSet::NON_DELTA);
+        let sample = if guided {
+            guided_sample(&bsdf, lights.region(), point.position, wo, choice, u)
+        } else {
+            bsdf.sample(LobeSet::ALL, choice, u, TransportMode::Importance)
+                .map(|s| (s.wi, s.weight, s.kind.intersects(LobeSet::CONTINUE)))
+        };
+        let Some((wi, weight, specular)) = sample else {
+            counters.photons.absorbed += 1;
+            add(&mut counters.photons.power.absorbed, walk.flux);
+            return false;
+        };
+        let outgoing = walk.flux * weight;
+        // Survival keeps the largest channel of the flux, so that all photons weigh about the same.
+        let keep = (outgoing.max_element() / walk.flux.max_element().max(1e-30)).min(1.0);
+        if !(survival < keep) {
+            counters.photons.absorbed += 1;
+            add(&mut counters.photons.power.absorbed, walk.flux);
+            return false;
+        }
+        let outgoing = outgoing / keep;
+        add(&mut counters.photons.power.absorbed, walk.flux - outgoing);
+        walk.flux = outgoing;
+        walk.specular_only &= specular;
+        walk.ray = Ray::new(point.ray_origin(wi), wi);
+        true
+    }
+
+    fn store(
+        &self,
+        walk: &Walk,
+        point: &SurfacePoint,
+        wo: Vec3,
+        bsdf: &Bsdf,
+        stored: &mut StoredPhotons,
+        counters: &mut Counters,
+    ) {
+        let caustic = walk.specular_only && walk.depth > 1;
+        if self.keep == Keep::Indirect && walk.depth == 1 {
+            return;
+        }
+        // A density counts flux over the face; scattering is defined over the shading normal. Their ratio here lets
+        // the estimate agree with a path tracer on smooth meshes (Veach 1997, section 5.3); its limit bounds noise.
+        let facing = point.geometric_normal.dot(wo);
+        let ratio = (bsdf.shading_normal().dot(wo) / facing).abs().min(8.0);
+        let normal = if facing >= 0.0 { point.geometric_normal } else { -point.geometric_normal };
+        let flux = walk.flux * if ratio.is_finite() { ratio } else { 1.0 };
+        let Ok(photon) = Photon::new(point.position, flux, wo, normal, walk.depth, caustic) else {
+            return;
+        };
+        add(&mut counters.photons.power.stored, walk.flux);
+        counters.photons.stored += 1;
+        if caustic && self.keep == Keep::Indirect {
+            counters.photons.stored_caustic += 1;
+            stored.caustic.push(photon);
+        } else {
+            stored.global.push(photon);
+        }
+    }
+}
+
+fn outside(region: VisibleRegion, position: Vec3) -> bool {
+    (position - region.center).length_squared() > region.radius * region.radius
+}
+
+/// Scatters a photon that landed far outside the visible region: half of the time towards the region, so that the
+/// powerful photons out there come back weak and many instead of strong and rare.
+fn guided_sample(
+    bsdf: &Bsdf,
+    region: VisibleRegion,
+    position: Vec3,
+    wo: Vec3,
+    choice: f32,
+    u: [f32; 2],
+) -> Option<(Vec3, Vec3, bool)> {
+    let target = photinus_geometry::Sphere { center: region.center, radius: region.radius };
+    let mode = TransportMode::Importance;
+    let Some(one_minus_cos) = crate::light::sphere_cone(&target, position) else {
+        let s = bsdf.sample(LobeSet::ALL, choice, u, mode)?;
+        return Some((s.wi, s.weight, s.kind.intersects(LobeSet::CONTINUE)));
+    };
+    let cone_pdf = 1.0 / (TAU * one_minus_cos);
+    let axis = (region.center - position).normalize();
+    let in_cone = |wi: Vec3| wi.dot(axis) >= 1.0 - one_minus_cos;
+    if choice < 0.5 {
+        let wi = Frame::from_normal(axis).to_world(crate::light::uniform_cone(u, one_minus_cos));
+        let pdf = 0.5 * cone_pdf + 0.5 * bsdf.pdf(LobeSet::ALL, wi);
+        let value = bsdf.eval(LobeSet::ALL, wi, mode);
+        (value.max_element() > 0.0).then(|| (wi, value / pdf, false))
+    } else {
+        let s = bsdf.sample(LobeSet::ALL, 2.0 * choice - 1.0, u, mode)?;
+        let specular = s.kind.intersects(LobeSet::CONTINUE);
+        if s.kind.intersects(LobeSet::DELTA) {
+            return Some((s.wi, s.weight * 2.0, specular));
+        }
+        let pdf = 0.5 * s.pdf + if in_cone(s.wi) { 0.5 * cone_pdf } else { 0.0 };
+        Some((s.wi, s.weight * (s.pdf / pdf), specular))
+    }
+}
+
+fn add(sum: &mut [f64; 3], flux: Vec3) {
+    for (s, f) in sum.iter_mut().zip(flux.to_array()) {
+        *s += f64::from(f);
+    }
+}

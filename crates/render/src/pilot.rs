@@ -1,0 +1,172 @@
+//! A look at the scene before the first pass: which part of it is visible, how wide a pixel is there, and how densely
+//! photons fall. It steers radii and the aim of photons, and never enters an estimate.
+
+use crate::bsdf::{LobeSet, TransportMode};
+use crate::camera::CameraModel;
+use crate::control::{Cancelled, Observer};
+use crate::counters::Counters;
+use crate::light::{Lights, VisibleRegion};
+use crate::photon_pass::{Keep, PhotonPass};
+use crate::trace::Tracer;
+use crate::world::World;
+use photinus_geometry::{Ray, Vec3};
+use photinus_num::{Sampler, StreamKind};
+use photinus_photons::{BuildOptions, Photon};
+
+/// Points looked at along each axis of the picture.
+const GRID: u32 = 48;
+/// Photons sent out by the pilot at most.
+const PHOTONS: u32 = 50_000;
+/// Neighbours whose distance measures density.
+const NEIGHBORS: usize = 32;
+/// Photons at which the density of the caustic map is measured.
+const CAUSTIC_PROBES: usize = 1024;
+/// Photons that an estimate of the first pass should find, for light after a diffuse bounce and for caustics.
+const GLOBAL_TARGET: f32 = 60.0;
+const CAUSTIC_TARGET: f32 = 30.0;
+
+/// A point that the camera sees, directly or by mirrors and glass.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct VisiblePoint {
+    pub position: Vec3,
+    /// Width of a pixel there.
+    pub width: f32,
+}
+
+/// First radii of the maps, scene units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Radii {
+    pub global: f32,
+    pub caustic: f32,
+}
+
+/// Follows one ray for each cell of a grid over the picture to the first surface that keeps photons.
+pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4], seed: u64) -> Vec<VisiblePoint> {
+    let mut paths: Vec<(Ray, f32, f32, Sampler)> = (0..GRID * GRID)
+        .map(|i| {
+            let mut sampler = Sampler::new(seed, StreamKind::Pilot, 1 << 40, i);
+            let [dx, dy] = sampler.next_2d();
+            let film = [
+                crop[0] as f32 + ((i % GRID) as f32 + dx) / GRID as f32 * crop[2] as f32,
+                crop[1] as f32 + ((i / GRID) as f32 + dy) / GRID as f32 * crop[3] as f32,
+            ];
+            let start = camera.ray(film, &mut sampler);
+            (start.ray, start.width, start.spread, sampler)
+        })
+        .collect();
+    let mut points = Vec::new();
+    let mut tracer = Tracer::new(world, false);
+    let (mut rays, mut hits) = (Vec::new(), Vec::new());
+    for _ in 0..12 {
+        rays.clear();
+        rays.extend(paths.iter().map(|p| p.0));
+        tracer.closest(&rays, &mut hits, &mut Counters::default(), |i| paths[i].3.next_1d());
+        let mut next = Vec::new();
+        for ((ray, width, spread, mut sampler), hit) in paths.into_iter().zip(&hits) {
+            if !hit.is_hit() {
+                continue;
+            }
+            let width = width + spread * hit.t;
+            let point = world.surface(&ray, hit, width);
+            let wo = -ray.dir;
+            let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, &point, wo);
+            if bsdf.has(LobeSet::GATHER) {
+                points.push(VisiblePoint { position: point.position, width });
+                continue;
+            }
+            sampler.start_vertex();
+            let (choice, u) = (sampler.next_1d(), sampler.next_2d());
+            if let Some(s) = bsdf.sample(LobeSet::CONTINUE, choice, u, TransportMode::Radiance) {
+                next.push((Ray::new(point.ray_origin(s.wi), s.wi), width, spread, sampler));
+            }
+        }
+        paths = next;
+        if paths.is_empty() {
+            break;
+        }
+    }
+    points
+}
+
+/// The sphere around most of what is visible; around everything where nothing is, or where it is most of the scene.
+pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleRegion {
+    let bounds = world.bounds();
+    let whole = if bounds.is_empty() {
+        VisibleRegion { center: Vec3::ZERO, radius: 1.0 }
+    } else {
+        VisibleRegion { center: bounds.center(), radius: (0.5 * bounds.diagonal()).max(1e-6) }
+    };
+    if points.len() < 16 {
+        return whole;
+    }
+    let middle = |axis: usize| {
+        let mut values: Vec<f32> = points.iter().map(|p| p.position[axis]).collect();
+        values.sort_unstable_by(f32::total_cmp);
+        // Middle of the inner 90 %: one far corner does not drag the region along.
+        0.5 * (values[values.len() / 20] + values[values.len() - 1 - values.len() / 20])
+    };
+    let center = Vec3::new(middle(0), middle(1), middle(2));
+    let mut distances: Vec<f32> = points.iter().map(|p| (p.position - center).length()).collect();
+    distances.sort_unstable_by(f32::total_cmp);
+    let radius = distances[distances.len() * 95 / 100] * 1.1;
+    if radius > 0.7 * whole.radius || !(radius > 0.0) { whole } else { VisibleRegion { center, radius } }
+}
+
+/// What the photons of a pilot pass say about radii, for `photons` photons a pass.
+pub(crate) fn first_radii(
+    world: &World,
+    lights: &Lights,
+    points: &[VisiblePoint],
+    pass: PhotonPass,
+    photons: u32,
+    observer: &dyn Observer,
+) -> Result<Radii, Cancelled> {
+    let count = photons.min(PHOTONS);
+    let pilot = PhotonPass { kind: StreamKind::Pilot, pass: 0, count, ..pass };
+    let (stored, _) = pilot.run(world, lights, observer)?;
+    let scale = |target: f32| (target / NEIGHBORS as f32 * count as f32 / photons as f32).sqrt();
+    let width = median(points.iter().map(|p| p.width)).unwrap_or(0.0);
+    let fallback = 0.02 * lights.region().radius;
+    let positions: Vec<Vec3> = points.iter().map(|p| p.position).collect();
+    let caustic_positions = spread(&stored.caustic);
+    let global = typical_distance(&positions, stored.global, 0.5).map(|r| r * scale(GLOBAL_TARGET));
+    let caustic = typical_distance(&caustic_positions, stored.caustic, 0.5).map(|r| r * scale(CAUSTIC_TARGET));
+    let global = global.unwrap_or(fallback).max(width).max(1e-9);
+    if pass.keep == Keep::All {
+        return Ok(Radii { global, caustic: global });
+    }
+    // A caustic needs no finer radius than a pixel, and where it is as smooth as the rest no wider one than that.
+    let caustic = caustic.unwrap_or(global).clamp((0.7 * width).min(global), global);
+    Ok(Radii { global, caustic })
+}
+
+/// Positions of evenly chosen photons.
+fn spread(photons: &[Photon]) -> Vec<Vec3> {
+    let step = (photons.len() / CAUSTIC_PROBES).max(1);
+    photons.iter().step_by(step).map(Photon::position).collect()
+}
+
+/// Quantile of the distance to the farthest of [`NEIGHBORS`] photons, over `positions`; none where photons are few.
+fn typical_distance(positions: &[Vec3], photons: Vec<Photon>, quantile: f32) -> Option<f32> {
+    if photons.len() < NEIGHBORS * 2 || positions.is_empty() {
+        return None;
+    }
+    let search = photinus_photons::build(photinus_photons::DEFAULT_SEARCH, photons, &BuildOptions::default()).ok()?;
+    let mut found = Vec::new();
+    let mut distances: Vec<f32> = positions
+        .iter()
+        .map(|&position| {
+            search.nearest(position, NEIGHBORS, f32::INFINITY, &mut found);
+            found.last().map_or(0.0, |n| n.distance_sq.sqrt())
+        })
+        .collect();
+    distances.sort_unstable_by(f32::total_cmp);
+    let distance = distances[((distances.len() - 1) as f32 * quantile) as usize];
+    (distance > 0.0 && distance.is_finite()).then_some(distance)
+}
+
+fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
+    let mut values: Vec<f32> = values.collect();
+    values.sort_unstable_by(f32::total_cmp);
+    values.get(values.len() / 2).copied()
+}

@@ -1,0 +1,284 @@
+//! A render, pass by pass: photon pass, map build, eye pass, film.
+
+use crate::camera::CameraModel;
+use crate::control::{Cancelled, Observer, Phase};
+use crate::counters::Counters;
+use crate::direct::DEFAULT_LEVELS;
+use crate::eye_pass::EyePass;
+use crate::film::{Aov, Film, FilmLayout};
+use crate::film_filter::FilterSampler;
+use crate::light::Lights;
+use crate::maps::{Map, Maps};
+use crate::photon_pass::{Keep, PhotonPass, StoredPhotons};
+use crate::pilot::{self, Radii};
+use crate::settings::{Mode, Settings};
+use crate::world::World;
+use photinus_num::StreamKind;
+use photinus_photons::{BuildOptions, Kernel, PhotonError};
+
+/// Shrinking of the radius, Knaus and Zwicker 2011, section 5: the area falls by (i + ALPHA) / (i + 1).
+const ALPHA: f64 = 2.0 / 3.0;
+
+/// Why a render cannot start or go on.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// Stopped by its observer.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The photon search could not be built.
+    #[error("photon map: {0}")]
+    Photons(#[from] PhotonError),
+}
+
+/// A running render.
+pub struct Renderer<'w> {
+    world: &'w World,
+    settings: Settings,
+    layout: FilmLayout,
+    camera: CameraModel,
+    filter: FilterSampler,
+    crop: [u32; 4],
+    max_depth: u32,
+    photons: u32,
+    lights: Lights,
+    radii: Radii,
+    /// Maps that all passes share, in the modes with one photon map.
+    shared_maps: Option<Maps>,
+    film: Film,
+    /// What a first pass had done when it was stopped.
+    partial: Option<Vec<f32>>,
+    counters: Counters,
+}
+
+impl<'w> Renderer<'w> {
+    /// Looks at the scene: what is visible, which radii fit.
+    pub fn new(world: &'w World, settings: Settings, observer: &dyn Observer) -> Result<Self, RenderError> {
+        observer.begin(Phase::Pilot, 0);
+        let camera = CameraModel::new(&world.camera, &world.film);
+        let crop = world.film.crop.unwrap_or([0, 0, world.film.width, world.film.height]);
+        let mut aovs = settings.aovs.clone();
+        if settings.track_error && !aovs.contains(&Aov::Variance) {
+            aovs.push(Aov::Variance);
+        }
+        let layout = FilmLayout::new(&aovs);
+        let pixels = crop[2] as usize * crop[3] as usize;
+        let photons = settings.photons.unwrap_or_else(|| default_photons(settings.mode, pixels));
+        let max_depth = settings.max_depth.or(world.integrator.max_depth).unwrap_or(match settings.mode {
+            Mode::Direct => DEFAULT_LEVELS,
+            _ => u32::MAX,
+        });
+        let points = if settings.mode == Mode::Path {
+            Vec::new()
+        } else {
+            pilot::visible_points(world, &camera, crop, settings.seed)
+        };
+        let lights = Lights::new(world, pilot::visible_region(world, &points));
+        let mut renderer = Self {
+            world,
+            layout,
+            camera,
+            filter: FilterSampler::new(world.film.filter),
+            crop,
+            max_depth,
+            photons,
+            lights,
+            radii: Radii { global: 1.0, caustic: 1.0 },
+            shared_maps: None,
+            film: Film::new(0),
+            partial: None,
+            counters: Counters::default(),
+            settings,
+        };
+        renderer.film = Film::new(pixels * renderer.layout.channels());
+        if renderer.settings.mode != Mode::Path {
+            renderer.radii = match renderer.settings.radius {
+                Some(radius) => Radii { global: radius, caustic: radius },
+                None => {
+                    pilot::first_radii(world, &renderer.lights, &points, renderer.photon_pass(0), photons, observer)?
+                }
+            };
+        }
+        Ok(renderer)
+    }
+
+    /// Photons of a pass, or of all in the modes with one map.
+    pub fn photons(&self) -> u32 {
+        self.photons
+    }
+
+    /// First gather radii: light after a diffuse bounce, and caustics.
+    pub fn radii(&self) -> [f32; 2] {
+        [self.radii.global, self.radii.caustic]
+    }
+
+    /// What has been counted so far.
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// Passes finished.
+    pub fn passes(&self) -> u32 {
+        self.film.passes()
+    }
+
+    /// Where outputs lie among the channels of [`Renderer::pixels`].
+    pub fn layout(&self) -> &FilmLayout {
+        &self.layout
+    }
+
+    /// Window of the film that is rendered: x, y, width, height.
+    pub fn window(&self) -> [u32; 4] {
+        self.crop
+    }
+
+    /// Lights of the scene.
+    pub fn lights(&self) -> &Lights {
+        &self.lights
+    }
+
+    fn photon_pass(&self, pass: u32) -> PhotonPass {
+        PhotonPass {
+            seed: self.settings.seed,
+            kind: StreamKind::Photon,
+            pass,
+            count: self.photons,
+            // The estimate's own edge to the camera is the last one.
+            max_depth: if self.settings.mode == Mode::Direct { 127 } else { self.max_depth.saturating_sub(1) },
+            keep: if self.settings.mode == Mode::Direct { Keep::All } else { Keep::Indirect },
+        }
+    }
+
+    /// Renders the next pass. Stopped by its observer, the render is as after the pass before; if that was none, what
+    /// the first pass has done is kept as the picture so far.
+    pub fn render_pass(&mut self, observer: &dyn Observer) -> Result<(), RenderError> {
+        let pass = self.film.passes();
+        let own_maps = match self.settings.mode {
+            Mode::Path => None,
+            Mode::Progressive => {
+                let radii = self.pass_radii(pass);
+                Some(self.build_maps(pass, radii, observer)?)
+            }
+            Mode::Gather | Mode::Direct => {
+                if self.shared_maps.is_none() {
+                    self.shared_maps = Some(self.build_maps(0, self.radii, observer)?);
+                }
+                None
+            }
+        };
+        let maps = own_maps.as_ref().or(self.shared_maps.as_ref());
+        observer.begin(Phase::EyePass, pass);
+        let mut buffer = self.film.buffer();
+        let eye = EyePass {
+            world: self.world,
+            lights: &self.lights,
+            camera: &self.camera,
+            filter: &self.filter,
+            layout: &self.layout,
+            crop: self.crop,
+            seed: self.settings.seed,
+            pass,
+            spp: self.settings.spp.max(1),
+            max_depth: self.max_depth,
+            maps,
+            probe: self.lights.has_environment(),
+        };
+        let result = match (self.settings.mode, maps) {
+            (Mode::Direct, Some(maps)) => eye.run_direct(maps, &mut buffer, observer),
+            _ => eye.run(&mut buffer, observer),
+        };
+        match result {
+            Ok(counters) => {
+                self.counters += counters;
+                self.film.add(buffer);
+                self.partial = None;
+                Ok(())
+            }
+            Err(cancelled) => {
+                if self.film.passes() == 0 {
+                    self.partial = Some(buffer);
+                }
+                Err(cancelled.into())
+            }
+        }
+    }
+
+    fn pass_radii(&self, pass: u32) -> Radii {
+        let mut area = 1.0f64;
+        for i in 1..=u64::from(pass) {
+            area *= (i as f64 + ALPHA) / (i as f64 + 1.0);
+        }
+        let shrink = area.sqrt() as f32;
+        Radii { global: self.radii.global * shrink, caustic: self.radii.caustic * shrink }
+    }
+
+    fn build_maps(&mut self, pass: u32, radii: Radii, observer: &dyn Observer) -> Result<Maps, RenderError> {
+        observer.begin(Phase::PhotonPass, pass);
+        let (StoredPhotons { global, caustic }, counters) =
+            self.photon_pass(pass).run(self.world, &self.lights, observer)?;
+        self.counters += counters;
+        observer.begin(Phase::MapBuild, pass);
+        let kernel = if self.settings.mode == Mode::Progressive { Kernel::Epanechnikov } else { Kernel::Constant };
+        let name = &self.settings.search;
+        let map = |photons, radius| -> Result<Map, PhotonError> {
+            let options = BuildOptions { radius_hint: radius };
+            Ok(Map { search: photinus_photons::build(name, photons, &options)?, radius, kernel })
+        };
+        Ok(Maps {
+            global: map(global, radii.global)?,
+            caustic: if caustic.is_empty() { None } else { Some(map(caustic, radii.caustic)?) },
+            knn: self.settings.knn,
+        })
+    }
+
+    /// The picture so far: channels of each pixel of the window, row by row, by [`Renderer::layout`].
+    pub fn pixels(&self) -> Vec<f32> {
+        let mut mean = match &self.partial {
+            Some(partial) if self.film.passes() == 0 => partial.clone(),
+            _ => self.film.mean(),
+        };
+        let passes = self.film.passes().max(1) as f32;
+        for pixel in mean.chunks_exact_mut(self.layout.channels()) {
+            if let Some(offset) = self.layout.offset(Aov::Variance) {
+                let luminance = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
+                let spread = (pixel[offset] - luminance * luminance).max(0.0);
+                pixel[offset] = if passes > 1.0 { spread / (passes - 1.0) } else { 0.0 };
+            }
+            // Only the first pass writes ids: the mean over passes divided them.
+            for aov in [Aov::ObjectId, Aov::MaterialId] {
+                if let Some(offset) = self.layout.offset(aov) {
+                    pixel[offset] = (pixel[offset] * passes).round();
+                }
+            }
+        }
+        mean
+    }
+
+    /// Estimated error of the picture so far: mean over pixels of variance / (luminance^2 + 0.01), as relMSE weighs
+    /// it. None before the second pass, or where variance is not tracked.
+    pub fn estimated_error(&self) -> Option<f64> {
+        let offset = self.layout.offset(Aov::Variance)?;
+        if self.film.passes() < 2 {
+            return None;
+        }
+        let pixels = self.pixels();
+        let channels = self.layout.channels();
+        let sum: f64 = pixels
+            .chunks_exact(channels)
+            .map(|p| {
+                let luminance = f64::from(0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]);
+                f64::from(p[offset]) / (luminance * luminance + 0.01)
+            })
+            .sum();
+        Some(sum / (pixels.len() / channels).max(1) as f64)
+    }
+}
+
+fn default_photons(mode: Mode, pixels: usize) -> u32 {
+    match mode {
+        Mode::Path => 0,
+        Mode::Progressive => pixels.clamp(100_000, 1_000_000) as u32,
+        Mode::Gather => 1_000_000,
+        // The thesis's standard rendering.
+        Mode::Direct => 50_000,
+    }
+}

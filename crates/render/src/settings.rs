@@ -1,0 +1,81 @@
+//! What a render is to do.
+
+use crate::film::Aov;
+use serde::Serialize;
+
+/// How light is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mode {
+    /// Independent photon passes with a shrinking radius; the default.
+    Progressive,
+    /// One photon map with a fixed radius, many eye passes.
+    Gather,
+    /// The thesis's renderer: one map, an estimate at every hit, no shadow rays.
+    Direct,
+    /// A path tracer: ground truth.
+    Path,
+}
+
+impl Mode {
+    /// Every one.
+    pub const ALL: [Self; 4] = [Self::Progressive, Self::Gather, Self::Direct, Self::Path];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Progressive => "progressive",
+            Self::Gather => "gather",
+            Self::Direct => "direct",
+            Self::Path => "path",
+        }
+    }
+
+    /// The one of this name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|mode| mode.name() == name)
+    }
+}
+
+/// Settings of a render. Equal settings and scene give equal bits.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Settings {
+    /// How light is found.
+    pub mode: Mode,
+    /// Photons emitted: a pass in progressive, in all in direct and gather; none: chosen from the picture's size.
+    pub photons: Option<u32>,
+    /// Gather radius in scene units: fixed in direct and gather, of the first pass in progressive; none: chosen from
+    /// the pixel's footprint and the photon density at visible points.
+    pub radius: Option<f32>,
+    /// Most photons of one estimate, the nearest; none: no limit.
+    pub knn: Option<u32>,
+    /// Eye samples a pixel and pass, at least 1.
+    pub spp: u32,
+    /// Most edges of a path, camera to light: 1 sees emission only; none: as the scene says, or no limit.
+    pub max_depth: Option<u32>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Photon search, by its name.
+    pub search: String,
+    /// Pictures beside the beauty.
+    pub aovs: Vec<Aov>,
+    /// Variance is tracked for a stop on error.
+    pub track_error: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Progressive,
+            photons: None,
+            radius: None,
+            knn: None,
+            spp: 1,
+            max_depth: None,
+            seed: 0,
+            search: "grid".to_owned(),
+            aovs: Vec::new(),
+            track_error: false,
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Batches of ray queries, surfaces that let light through taken into account.
+
+use crate::SurfacePoint;
+use crate::counters::Counters;
+use crate::world::World;
+use photinus_geometry::{Hit, Ray, Vec3};
+
+/// Most holes that one ray passes: stacks of leaves are shallow, broken scenes are not.
+const MAX_HOLES: u32 = 1024;
+
+/// Answers queries of one batch and counts them.
+pub(crate) struct Tracer<'w> {
+    world: &'w World,
+    /// This batch runs the counting kernels.
+    instrumented: bool,
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    blocked: Vec<bool>,
+    pending: Vec<usize>,
+}
+
+impl<'w> Tracer<'w> {
+    pub fn new(world: &'w World, instrumented: bool) -> Self {
+        Self { world, instrumented, rays: Vec::new(), hits: Vec::new(), blocked: Vec::new(), pending: Vec::new() }
+    }
+
+    fn closest_batch(&mut self, counters: &mut Counters) {
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), Hit::MISS);
+        if self.instrumented {
+            self.world.structure.closest_hit_counted(&self.rays, &mut self.hits, &mut counters.sampled_rays);
+        } else {
+            self.world.structure.closest_hit(&self.rays, &mut self.hits);
+        }
+    }
+
+    /// The nearest hit of each ray on a surface that stops it. `draw(i)` gives a random number of ray `i`, asked for
+    /// only where its hit is partly transparent.
+    pub fn closest(
+        &mut self,
+        rays: &[Ray],
+        hits: &mut Vec<Hit>,
+        counters: &mut Counters,
+        mut draw: impl FnMut(usize) -> f32,
+    ) {
+        self.rays.clear();
+        self.rays.extend_from_slice(rays);
+        self.closest_batch(counters);
+        hits.clear();
+        hits.extend_from_slice(&self.hits);
+        if !self.world.passes_light {
+            return;
+        }
+        self.pending.clear();
+        self.pending.extend(0..rays.len());
+        for _ in 0..MAX_HOLES {
+            let (mut next, mut retry) = (Vec::new(), Vec::new());
+            for (slot, &i) in self.pending.iter().enumerate() {
+                let hit = self.hits[slot];
+                hits[i] = hit;
+                if !hit.is_hit() {
+                    continue;
+                }
+                let point = self.world.surface(&rays[i], &hit, 0.0);
+                let through = self.world.transparency(&point);
+                if through > 0.0 && draw(i) < through {
+                    next.push(i);
+                    retry.push(beyond(&self.rays[slot], &hit, &point));
+                    hits[i] = Hit::MISS;
+                }
+            }
+            if next.is_empty() {
+                return;
+            }
+            (self.pending, self.rays) = (next, retry);
+            self.closest_batch(counters);
+        }
+    }
+
+    /// Share of light that passes along each ray, 0 to 1: `visible` gets one number a ray.
+    pub fn visibility(&mut self, rays: &[Ray], visible: &mut Vec<f32>, counters: &mut Counters) {
+        visible.clear();
+        if !self.world.passes_light {
+            self.blocked.clear();
+            self.blocked.resize(rays.len(), false);
+            if self.instrumented {
+                self.world.structure.any_hit_counted(rays, &mut self.blocked, &mut counters.sampled_rays);
+            } else {
+                self.world.structure.any_hit(rays, &mut self.blocked);
+            }
+            visible.extend(self.blocked.iter().map(|&b| if b { 0.0 } else { 1.0 }));
+            return;
+        }
+        visible.resize(rays.len(), 1.0);
+        self.rays.clear();
+        self.rays.extend_from_slice(rays);
+        self.pending.clear();
+        self.pending.extend(0..rays.len());
+        for _ in 0..MAX_HOLES {
+            if self.pending.is_empty() {
+                return;
+            }
+            self.closest_batch(counters);
+            let (mut next, mut retry) = (Vec::new(), Vec::new());
+            for (slot, &i) in self.pending.iter().enumerate() {
+                let hit = self.hits[slot];
+                if !hit.is_hit() {
+                    continue;
+                }
+                let point = self.world.surface(&rays[i], &hit, 0.0);
+                visible[i] *= self.world.transparency(&point);
+                if visible[i] > 0.0 {
+                    next.push(i);
+                    retry.push(beyond(&self.rays[slot], &hit, &point));
+                }
+            }
+            (self.pending, self.rays) = (next, retry);
+        }
+        for &i in &self.pending {
+            visible[i] = 0.0;
+        }
+    }
+}
+
+/// The rest of a ray after a hit that let it through; parameters stay those of the whole ray.
+fn beyond(ray: &Ray, hit: &Hit, point: &SurfacePoint) -> Ray {
+    let step = 2.0 * point.offset / ray.dir.length().max(1e-30);
+    let after = hit.t + step;
+    // Far along a ray the step may vanish in rounding: the next number up always moves on.
+    Ray { t_min: if after > hit.t { after } else { hit.t.next_up() }, ..*ray }
+}
+
+/// The ray from a surface point along `dir` to `target`, or to infinity.
+pub(crate) fn shadow_ray(point: &SurfacePoint, dir: Vec3, target: Option<Vec3>) -> Ray {
+    let origin = point.ray_origin(dir);
+    match target {
+        Some(target) => Ray { origin, t_min: 0.0, dir: target - origin, t_max: 1.0 },
+        None => Ray::new(origin, dir),
+    }
+}

@@ -1,0 +1,341 @@
+//! A scene compiled for rendering: primitives under one numbering, their attributes, materials and the structure that
+//! answers ray queries.
+
+use crate::SurfacePoint;
+use crate::bsdf::{Materials, SurfaceModel};
+use photinus_accel::Structure;
+use photinus_geometry::{Aabb, Frame, Hit, Primitives, Ray, Vec2, Vec3};
+use photinus_scene::{
+    Camera, ColorInput, FilmSettings, Geometry, IntegratorHint, Light, MaterialId, NamedMaterial, Scene, Shape,
+};
+use std::sync::Arc;
+
+/// Absence of an attribute array in a [`ShapeRecord`].
+const NONE: u32 = u32::MAX;
+
+/// A point on a triangle is off its plane by at most a few units in the last place of its largest coordinates (Ray
+/// Tracing Gems, chapter 6), and so is the test of a ray that starts there: 2^-20 is sixteen such units.
+const OFFSET: f32 = 1.0 / 1_048_576.0;
+/// Keeps the offset above zero at the origin.
+const TINY: f32 = 1e-20;
+
+/// What a shape looks like to the renderer.
+#[derive(Clone, Debug)]
+pub(crate) struct ShapeRecord {
+    pub material: MaterialId,
+    pub emission: Option<ColorInput>,
+    /// First primitive id and how many.
+    pub first_prim: u32,
+    pub prim_count: u32,
+    /// Some material around or inside this one lets light straight through.
+    pub passes_light: bool,
+    /// Start of the shape's vertices, and of its attributes where it has them.
+    first_vertex: u32,
+    normals: u32,
+    uvs: u32,
+    colors: u32,
+    /// Of a sphere: inward normals, and its axes.
+    flip_normals: bool,
+    axes: [Vec3; 3],
+}
+
+/// A scene ready to be rendered.
+pub struct World {
+    /// Name of the scene.
+    pub name: String,
+    /// View.
+    pub camera: Camera,
+    /// Picture.
+    pub film: FilmSettings,
+    /// What the file says of the integrator.
+    pub integrator: IntegratorHint,
+    /// Lights without geometry.
+    pub(crate) lights: Vec<Light>,
+    pub(crate) primitives: Arc<Primitives>,
+    pub(crate) structure: Box<dyn Structure>,
+    pub(crate) materials: Materials,
+    pub(crate) bounds: Aabb,
+    pub(crate) passes_light: bool,
+    pub(crate) shapes: Vec<ShapeRecord>,
+    /// First primitive of each run of one shape, and the shape; sorted.
+    runs: Vec<(u32, u32)>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    colors: Vec<Vec3>,
+}
+
+/// Geometry gathered from a scene, before a structure is built over it.
+pub struct Compiled {
+    scene: Scene,
+    primitives: Arc<Primitives>,
+    shapes: Vec<ShapeRecord>,
+    runs: Vec<(u32, u32)>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    colors: Vec<Vec3>,
+}
+
+impl Compiled {
+    /// Moves the geometry of `scene` into arrays of primitives and attributes.
+    pub fn new(mut scene: Scene) -> Self {
+        let mut primitives = Primitives::default();
+        let (mut shapes, mut runs) = (Vec::new(), Vec::new());
+        let (mut normals, mut uvs, mut colors) = (Vec::new(), Vec::new(), Vec::new());
+        let triangles = scene.triangle_count();
+        primitives.triangles.reserve_exact(triangles);
+        let mut spheres = 0;
+        let descriptions: Vec<Shape> = std::mem::take(&mut scene.shapes);
+        for (index, shape) in descriptions.into_iter().enumerate() {
+            let mut record = ShapeRecord {
+                material: shape.material,
+                emission: shape.emission,
+                first_prim: 0,
+                prim_count: 0,
+                passes_light: passes_light(&scene.materials, shape.material),
+                first_vertex: primitives.positions.len() as u32,
+                normals: NONE,
+                uvs: NONE,
+                colors: NONE,
+                flip_normals: false,
+                axes: [Vec3::X, Vec3::Y, Vec3::Z],
+            };
+            match shape.geometry {
+                Geometry::Mesh(mesh) => {
+                    record.first_prim = primitives.triangles.len() as u32;
+                    record.prim_count = mesh.triangles.len() as u32;
+                    let base = record.first_vertex;
+                    primitives.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + base)));
+                    primitives.positions.extend_from_slice(&mesh.positions);
+                    record.normals = append(&mut normals, mesh.normals);
+                    record.uvs = append(&mut uvs, mesh.uvs);
+                    record.colors = append(&mut colors, mesh.colors);
+                }
+                Geometry::Sphere { sphere, flip_normals, axes } => {
+                    record.first_prim = (triangles + spheres) as u32;
+                    record.prim_count = 1;
+                    spheres += 1;
+                    primitives.spheres.push(sphere);
+                    record.flip_normals = flip_normals;
+                    record.axes = axes;
+                }
+            }
+            if record.prim_count > 0 {
+                runs.push((record.first_prim, index as u32));
+            }
+            shapes.push(record);
+        }
+        runs.sort_unstable();
+        Self { scene, primitives: Arc::new(primitives), shapes, runs, normals, uvs, colors }
+    }
+
+    /// What a structure is to be built over.
+    pub fn primitives(&self) -> &Arc<Primitives> {
+        &self.primitives
+    }
+
+    /// The finished world, with the structure that answers its rays.
+    pub fn with_structure(self, structure: Box<dyn Structure>, model: SurfaceModel) -> World {
+        let Scene { name, camera, film, integrator, lights, .. } = &self.scene;
+        World {
+            name: name.clone(),
+            camera: *camera,
+            film: *film,
+            integrator: *integrator,
+            lights: lights.clone(),
+            bounds: self.primitives.bounds(),
+            passes_light: self.shapes.iter().any(|s| s.passes_light),
+            materials: Materials::new(&self.scene, model),
+            primitives: self.primitives,
+            structure,
+            shapes: self.shapes,
+            runs: self.runs,
+            normals: self.normals,
+            uvs: self.uvs,
+            colors: self.colors,
+        }
+    }
+}
+
+fn append<T>(all: &mut Vec<T>, more: Vec<T>) -> u32 {
+    if more.is_empty() {
+        return NONE;
+    }
+    let start = all.len() as u32;
+    all.extend(more);
+    start
+}
+
+fn passes_light(materials: &[NamedMaterial], id: MaterialId) -> bool {
+    use photinus_scene::Material;
+    let material = &materials[id.0 as usize].material;
+    matches!(material, Material::Mask { .. } | Material::Null)
+        || material.nested().any(|nested| passes_light(materials, nested))
+}
+
+impl World {
+    /// Index of the shape that primitive `prim` belongs to.
+    pub(crate) fn shape_of(&self, prim: u32) -> usize {
+        let run = self.runs.partition_point(|&(first, _)| first <= prim) - 1;
+        self.runs[run].1 as usize
+    }
+
+    /// Bytes of the geometry and its attributes, the structure left out.
+    pub fn geometry_bytes(&self) -> usize {
+        self.primitives.positions.len() * 12
+            + self.primitives.triangles.len() * 12
+            + self.primitives.spheres.len() * 16
+            + self.normals.len() * 12
+            + self.uvs.len() * 8
+            + self.colors.len() * 12
+            + self.shapes.len() * size_of::<ShapeRecord>()
+    }
+
+    /// Bytes of textures and material tables.
+    pub fn texture_bytes(&self) -> usize {
+        self.materials.bytes()
+    }
+
+    /// The structure that answers ray queries.
+    pub fn structure(&self) -> &dyn Structure {
+        &*self.structure
+    }
+
+    /// Bounds of everything; empty where there is nothing.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The surface at a hit. `width` is the width of the pixel's cone there, in scene units; 0 where unknown.
+    pub(crate) fn surface(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
+        let shape = self.shape_of(hit.prim);
+        let record = &self.shapes[shape];
+        let triangles = self.primitives.triangle_count() as u32;
+        let mut point = if hit.prim < triangles {
+            self.triangle_surface(record, hit.prim as usize, hit.alpha, hit.beta)
+        } else {
+            self.sphere_surface(record, (hit.prim - triangles) as usize, ray.at(hit.t))
+        };
+        let stretch = point.dp_du.length().min(point.dp_dv.length());
+        point.uv_footprint = if width > 0.0 && stretch > 1e-12 { width / stretch } else { 0.0 };
+        point.shape = shape as u32;
+        point.prim = hit.prim;
+        point
+    }
+
+    /// The surface of triangle `prim` at barycentrics (alpha, beta); also where a light is sampled on it.
+    pub(crate) fn triangle_point(&self, prim: u32, alpha: f32, beta: f32) -> SurfacePoint {
+        let shape = self.shape_of(prim);
+        let mut point = self.triangle_surface(&self.shapes[shape], prim as usize, alpha, beta);
+        (point.shape, point.prim) = (shape as u32, prim);
+        point
+    }
+
+    fn triangle_surface(&self, record: &ShapeRecord, prim: usize, alpha: f32, beta: f32) -> SurfacePoint {
+        let [a, b, c] = self.primitives.triangle(prim);
+        let weights = [1.0 - alpha - beta, alpha, beta];
+        let local = self.primitives.triangles[prim].map(|v| v - record.first_vertex);
+        let (e1, e2) = (b - a, c - a);
+        let position = a + e1 * alpha + e2 * beta;
+        let face = e1.cross(e2).try_normalize().unwrap_or(Vec3::Z);
+        let normal = if record.normals == NONE {
+            face
+        } else {
+            let n = local.map(|v| self.normals[(record.normals + v) as usize]);
+            (n[0] * weights[0] + n[1] * weights[1] + n[2] * weights[2]).try_normalize().unwrap_or(face)
+        };
+        // Vertex normals say which side is out; windings in real files often do not.
+        let geometric_normal = if face.dot(normal) < 0.0 { -face } else { face };
+        let (uv, dp_du, dp_dv) = if record.uvs == NONE {
+            (Vec2::new(alpha, beta), e1, e2)
+        } else {
+            let t = local.map(|v| self.uvs[(record.uvs + v) as usize]);
+            let uv = t[0] * weights[0] + t[1] * weights[1] + t[2] * weights[2];
+            let (d1, d2) = (t[1] - t[0], t[2] - t[0]);
+            let determinant = d1.x * d2.y - d1.y * d2.x;
+            if determinant == 0.0 || !determinant.is_finite() {
+                let frame = Frame::from_normal(face);
+                (uv, frame.s, frame.t)
+            } else {
+                let inv = 1.0 / determinant;
+                (uv, (e1 * d2.y - e2 * d1.y) * inv, (e2 * d1.x - e1 * d2.x) * inv)
+            }
+        };
+        let color = if record.colors == NONE {
+            Vec3::ONE
+        } else {
+            let c = local.map(|v| self.colors[(record.colors + v) as usize]);
+            c[0] * weights[0] + c[1] * weights[1] + c[2] * weights[2]
+        };
+        SurfacePoint {
+            position,
+            geometric_normal,
+            frame: Frame::from_normal_and_tangent(normal, dp_du),
+            uv,
+            dp_du,
+            dp_dv,
+            color,
+            uv_footprint: 0.0,
+            offset: OFFSET * (a.abs() + e1.abs() + e2.abs()).max_element() + TINY,
+            shape: 0,
+            prim: 0,
+        }
+    }
+
+    /// The surface of sphere `index` (counted among spheres) nearest to `near`.
+    fn sphere_surface(&self, record: &ShapeRecord, index: usize, near: Vec3) -> SurfacePoint {
+        let sphere = self.primitives.spheres[index];
+        let outward = (near - sphere.center).try_normalize().unwrap_or(Vec3::Z);
+        let position = sphere.center + outward * sphere.radius;
+        let [x, y, z] = record.axes;
+        let local = Vec3::new(x.dot(outward), y.dot(outward), z.dot(outward));
+        use std::f32::consts::{PI, TAU};
+        let phi = libm::atan2f(local.y, local.x);
+        let phi = if phi < 0.0 { phi + TAU } else { phi };
+        let theta = libm::acosf(local.z.clamp(-1.0, 1.0));
+        let uv = Vec2::new(phi / TAU, 1.0 - theta / PI);
+        let dp_du = (y * local.x - x * local.y) * (TAU * sphere.radius);
+        let normal = if record.flip_normals { -outward } else { outward };
+        let dp_du = if dp_du.length_squared() > 1e-12 * sphere.radius * sphere.radius {
+            dp_du
+        } else {
+            Frame::from_normal(normal).s * sphere.radius
+        };
+        let dp_dv = outward.cross(dp_du.normalize()) * (PI * sphere.radius);
+        SurfacePoint {
+            position,
+            geometric_normal: normal,
+            frame: Frame::from_normal_and_tangent(normal, dp_du),
+            uv,
+            dp_du,
+            dp_dv,
+            color: Vec3::ONE,
+            uv_footprint: 0.0,
+            offset: OFFSET * (sphere.center.abs().max_element() + sphere.radius) + TINY,
+            shape: 0,
+            prim: 0,
+        }
+    }
+
+    /// The surface of sphere primitive `prim` nearest to `near`.
+    pub(crate) fn sphere_point(&self, prim: u32, near: Vec3) -> SurfacePoint {
+        let shape = self.shape_of(prim);
+        let index = prim as usize - self.primitives.triangle_count();
+        let mut point = self.sphere_surface(&self.shapes[shape], index, near);
+        (point.shape, point.prim) = (shape as u32, prim);
+        point
+    }
+
+    /// Radiance that leaves the surface at `point` towards `wo` by its own emission.
+    pub(crate) fn emitted(&self, point: &SurfacePoint, wo: Vec3) -> Vec3 {
+        match self.shapes[point.shape as usize].emission {
+            Some(input) if point.geometric_normal.dot(wo) > 0.0 => self.materials.color(input, &point.lookup()),
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// Share of light that passes straight through the surface at `point`, 0 to 1.
+    pub(crate) fn transparency(&self, point: &SurfacePoint) -> f32 {
+        let record = &self.shapes[point.shape as usize];
+        if record.passes_light { 1.0 - self.materials.opacity(record.material, &point.lookup()) } else { 0.0 }
+    }
+}

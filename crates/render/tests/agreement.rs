@@ -1,0 +1,214 @@
+//! Modes against each other: photons must find the light that path tracing finds, and the same settings must give the
+//! same bits. All renders use the seed in `common::SEED`.
+
+mod common;
+
+use common::*;
+use photinus_geometry::Vec3;
+use photinus_render::{Aov, Mode, Renderer, Settings, Silent};
+use photinus_scene::*;
+
+/// An open box with a coloured wall, a glass and a mirror sphere, and a lamp.
+fn box_scene(lamp_side: f32) -> Scene {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 3.6), Vec3::ZERO, 40.0), 32);
+    let white = scene.material(diffuse(0.7));
+    let red = scene.material(Material::Diffuse { reflectance: ColorInput::Constant(Vec3::new(0.6, 0.1, 0.1)) });
+    let lamp = scene.material(black());
+    let clear = scene.material(glass(1.5));
+    let shine = scene.material(mirror(0.9));
+    let two = Vec3::splat(2.0);
+    scene.quad(Vec3::new(-1.0, -1.0, 1.0), Vec3::X * two, Vec3::NEG_Z * two, white, None);
+    scene.quad(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * two, Vec3::Z * two, white, None);
+    scene.quad(Vec3::new(-1.0, -1.0, -1.0), Vec3::X * two, Vec3::Y * two, white, None);
+    scene.quad(Vec3::new(-1.0, -1.0, 1.0), Vec3::NEG_Z * two, Vec3::Y * two, red, None);
+    scene.quad(Vec3::new(1.0, -1.0, -1.0), Vec3::Z * two, Vec3::Y * two, white, None);
+    scene.sphere(Vec3::new(-0.4, -0.6, 0.2), 0.4, false, clear, None);
+    scene.sphere(Vec3::new(0.5, -0.65, -0.3), 0.35, false, shine, None);
+    let s = lamp_side;
+    scene.quad(Vec3::new(-s / 2.0, 0.98, -s / 2.0), Vec3::X * s, Vec3::Z * s, lamp, Some(4.0 / (s * s)));
+    scene
+}
+
+/// A plastic floor and a rough metal ball under a sky with a bright patch.
+fn outdoor_scene() -> Scene {
+    let mut scene = scene(camera(Vec3::new(0.0, 1.2, 4.0), Vec3::new(0.0, 0.4, 0.0), 35.0), 32);
+    let floor = scene.material(Material::RoughPlastic {
+        model: MicrofacetModel::Ggx,
+        alpha: FloatInput::Constant(0.15),
+        int_ior: 1.5,
+        ext_ior: 1.0,
+        diffuse_reflectance: ColorInput::Constant(Vec3::new(0.5, 0.4, 0.3)),
+        specular_reflectance: ColorInput::Constant(Vec3::ONE),
+        nonlinear: true,
+    });
+    let metal = scene.material(Material::RoughConductor {
+        model: MicrofacetModel::Ggx,
+        alpha: [FloatInput::Constant(0.3); 2],
+        eta: ColorInput::Constant(Vec3::new(0.2, 0.9, 1.1)),
+        k: ColorInput::Constant(Vec3::new(3.9, 2.5, 2.3)),
+        specular_reflectance: ColorInput::Constant(Vec3::ONE),
+    });
+    // Far wider than what is seen, so that photons from the sky must be aimed.
+    scene.quad(Vec3::new(-60.0, 0.0, 60.0), Vec3::X * 120.0, Vec3::NEG_Z * 120.0, floor, None);
+    scene.sphere(Vec3::new(-0.5, 0.5, 0.0), 0.5, false, metal, None);
+    let matte = scene.material(diffuse(0.6));
+    scene.sphere(Vec3::new(0.7, 0.4, 0.3), 0.4, false, matte, None);
+    let (width, height) = (32u32, 16u32);
+    let pixels = (0..width * height)
+        .map(|i| {
+            let (x, y) = (i % width, i / width);
+            let patch = if (10..13).contains(&x) && (3..5).contains(&y) { 12.0 } else { 0.0 };
+            [0.3 + patch, 0.4 + patch, 0.6 + 0.8 * patch, 1.0]
+        })
+        .collect();
+    let bitmap = std::sync::Arc::new(Bitmap { width, height, pixels: BitmapPixels::RgbaF32(pixels) });
+    scene.lights.push(Light::Environment(EnvironmentLight::Image {
+        bitmap,
+        scale: 1.0,
+        to_world: photinus_geometry::Affine3A::IDENTITY,
+    }));
+    scene
+}
+
+/// A smooth-shaded ball of few triangles beside a wall, lit by a small spherical lamp and a spot.
+fn smooth_scene() -> Scene {
+    let mut scene = scene(camera(Vec3::new(0.0, 0.5, 4.0), Vec3::new(0.0, 0.0, 0.0), 40.0), 32);
+    let white = scene.material(diffuse(0.75));
+    let lamp = scene.material(black());
+    scene.quad(Vec3::new(-2.0, -1.0, 2.0), Vec3::X * 4.0, Vec3::NEG_Z * 4.0, white, None);
+    scene.quad(Vec3::new(-2.0, -1.0, -2.0), Vec3::X * 4.0, Vec3::Y * 3.0, white, None);
+    let (rows, columns) = (12u32, 20u32);
+    let mut mesh = Mesh::default();
+    for i in 0..=rows {
+        let theta = std::f32::consts::PI * i as f32 / rows as f32;
+        for j in 0..columns {
+            let phi = std::f32::consts::TAU * j as f32 / columns as f32;
+            let n = Vec3::new(theta.sin() * phi.cos(), theta.cos(), -theta.sin() * phi.sin());
+            mesh.normals.push(n);
+            mesh.positions.push(n * 0.7 + Vec3::new(-0.2, -0.3, 0.0));
+            if i < rows {
+                let at = |i: u32, j: u32| i * columns + j % columns;
+                mesh.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                mesh.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+    }
+    scene.shapes.push(Shape {
+        name: "ball".to_owned(),
+        geometry: Geometry::Mesh(mesh),
+        material: white,
+        emission: None,
+    });
+    scene.sphere(Vec3::new(1.0, 1.2, 0.6), 0.15, false, lamp, Some(15.0));
+    scene.lights.push(Light::Spot {
+        position: Vec3::new(-1.5, 1.5, 1.5),
+        direction: Vec3::new(1.5, -2.0, -1.5).normalize(),
+        intensity: Vec3::new(6.0, 5.0, 4.0),
+        cutoff_angle: 0.5,
+        beam_width: 0.3,
+    });
+    scene
+}
+
+/// Means over blocks of 8 x 8 pixels.
+fn blocks(pixels: &[Vec3]) -> Vec<Vec3> {
+    (0..16)
+        .map(|b| {
+            let (bx, by) = (b % 4 * 8, b / 4 * 8);
+            let sum: Vec3 = (0..64).map(|i| pixels[(by + i / 8) * 32 + bx + i % 8]).sum();
+            sum / 64.0
+        })
+        .collect()
+}
+
+/// Block means of progressive and gather against those of the path tracer. Blocks hold 64 pixels of thousands of
+/// samples each: their own noise is well below the tolerance, bias of the radius is not hidden by it.
+#[test]
+fn photons_find_the_light_of_the_path_tracer() {
+    for (name, scene) in [("box", box_scene(0.6)), ("outdoor", outdoor_scene()), ("smooth", smooth_scene())] {
+        let world = world(scene);
+        let reference = blocks(&render(&world, Settings { spp: 64, ..settings(Mode::Path) }, 96).0);
+        let total: f32 = reference.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
+        for (mode, passes) in [(Mode::Progressive, 96), (Mode::Gather, 16)] {
+            let photons = if mode == Mode::Gather { 1_500_000 } else { 60_000 };
+            let settings = Settings { photons: Some(photons), spp: 4, ..settings(mode) };
+            let found = blocks(&render(&world, settings, passes).0);
+            for (i, (a, b)) in found.iter().zip(&reference).enumerate() {
+                let error = (*a - *b).abs().max_element() / (b.max_element() + 0.1 * total);
+                assert!(error < 0.05, "{name}, {mode:?}, block {i}: {a}, path {b}");
+            }
+            let sum: f32 = found.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
+            assert!((sum / total - 1.0).abs() < 0.01, "{name}, {mode:?}: mean {sum}, path {total}");
+        }
+    }
+}
+
+fn bits(world: &photinus_render::World, settings: &Settings, threads: usize) -> Vec<u32> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+    pool.install(|| {
+        let mut renderer = Renderer::new(world, settings.clone(), &Silent).expect("nothing stops it");
+        for _ in 0..3 {
+            renderer.render_pass(&Silent).expect("nothing stops it");
+        }
+        renderer.pixels().iter().map(|v| v.to_bits()).collect()
+    })
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    for scene in [box_scene(0.2), outdoor_scene()] {
+        let world = world(scene);
+        for mode in Mode::ALL {
+            let settings = Settings { photons: Some(30_000), aovs: Aov::ALL.to_vec(), ..settings(mode) };
+            let one = bits(&world, &settings, 1);
+            assert!(one.iter().any(|&b| f32::from_bits(b) > 0.0));
+            assert!(one.iter().all(|&b| f32::from_bits(b).is_finite()));
+            for threads in [1, 2, 7] {
+                assert!(one == bits(&world, &settings, threads), "{mode:?}: {threads} threads differ");
+            }
+        }
+    }
+}
+
+/// Every search and structure finds the same photons and hits, so that pictures agree to rounding.
+#[test]
+fn members_of_each_family_give_the_same_picture() {
+    let settings = Settings { photons: Some(20_000), ..settings(Mode::Progressive) };
+    let reference = render(&world(box_scene(0.6)), settings.clone(), 2).0;
+    for search in photinus_photons::SEARCHES {
+        let settings = Settings { search: search.name.to_owned(), ..settings.clone() };
+        let found = render(&world(box_scene(0.6)), settings, 2).0;
+        for (a, b) in found.iter().zip(&reference) {
+            assert!((*a - *b).abs().max_element() <= 1e-4 * (1.0 + b.max_element()), "{}: {a} {b}", search.name);
+        }
+    }
+    for structure in photinus_accel::STRUCTURES {
+        let compiled = photinus_render::Compiled::new(box_scene(0.6));
+        let built = photinus_accel::build(structure.name, compiled.primitives().clone(), &Default::default())
+            .expect("the scene is small");
+        let world = compiled.with_structure(built, photinus_render::bsdf::SurfaceModel::Physical);
+        let found = render(&world, settings.clone(), 2).0;
+        assert!(found == reference, "{} gives another picture", structure.name);
+    }
+}
+
+/// The parts of the picture sum to the beauty.
+#[test]
+fn parts_sum_to_the_beauty() {
+    let world = world(box_scene(0.6));
+    for mode in Mode::ALL {
+        let aovs = vec![Aov::Direct, Aov::Indirect, Aov::Caustic, Aov::Emitted];
+        let settings = Settings { photons: Some(20_000), aovs: aovs.clone(), ..settings(mode) };
+        let mut renderer = Renderer::new(&world, settings, &Silent).expect("nothing stops it");
+        for _ in 0..2 {
+            renderer.render_pass(&Silent).expect("nothing stops it");
+        }
+        let layout = renderer.layout().clone();
+        for pixel in renderer.pixels().chunks_exact(layout.channels()) {
+            for c in 0..3 {
+                let sum: f32 = aovs.iter().map(|&a| pixel[layout.offset(a).expect("asked for") + c]).sum();
+                assert!((sum - pixel[c]).abs() <= 1e-5 * (1.0 + pixel[c]), "{mode:?}: {sum} {}", pixel[c]);
+            }
+        }
+    }
+}
