@@ -1,0 +1,61 @@
+//! PNG out: 8 bits a channel, tone-mapped and sRGB-encoded.
+
+use super::atomic::write_atomic;
+use crate::colour::linear_to_srgb;
+use crate::error::{ImageError, ImageErrorKind, Result};
+use crate::image::Image;
+use crate::tonemap::Tonemap;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// Writes a picture as 8-bit sRGB PNG, atomically: exposure in stops (EV), then the tone curve, then the sRGB curve.
+pub fn write_png(path: impl AsRef<Path>, image: &Image, tonemap: Tonemap, exposure_ev: f32) -> Result<()> {
+    let path = path.as_ref();
+    write_atomic(path, &encode(image, tonemap, exposure_ev, path)?)
+}
+
+/// The bytes of that PNG; the same picture gives the same bytes.
+pub fn encode_png(image: &Image, tonemap: Tonemap, exposure_ev: f32) -> Result<Vec<u8>> {
+    encode(image, tonemap, exposure_ev, Path::new("PNG"))
+}
+
+/// Writes 8-bit RGB samples as they are (drawings, textures), atomically; row by row, the top row first.
+pub fn write_png8(path: impl AsRef<Path>, width: usize, height: usize, samples: &[[u8; 3]]) -> Result<()> {
+    let path = path.as_ref();
+    write_atomic(path, &encode_rgb8(width, height, samples.as_flattened(), path)?)
+}
+
+fn encode(image: &Image, tonemap: Tonemap, exposure_ev: f32, path: &Path) -> Result<Vec<u8>> {
+    let scale = libm::exp2f(exposure_ev);
+    let samples: Vec<[u8; 3]> = image
+        .pixels
+        .par_iter()
+        .map(|pixel| tonemap.map(pixel.map(|c| c * scale)).map(|c| quantise(linear_to_srgb(c))))
+        .collect();
+    encode_rgb8(image.width, image.height, samples.as_flattened(), path)
+}
+
+/// The nearest of 256 codes; NaN becomes 0.
+fn quantise(encoded: f32) -> u8 {
+    // `as` saturates and turns NaN into 0.
+    (encoded * 255.0 + 0.5) as u8
+}
+
+fn encode_rgb8(width: usize, height: usize, samples: &[u8], path: &Path) -> Result<Vec<u8>> {
+    let mismatch = |what: String| {
+        ImageError::new(ImageErrorKind::Mismatch, path, what, "this is an error of the program that writes the image")
+    };
+    let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
+        return Err(mismatch(format!("{width} x {height} pixels are too many for PNG")));
+    };
+    if samples.len() != width * height * 3 || samples.is_empty() {
+        return Err(mismatch(format!("{} samples do not make {width} x {height} pixels", samples.len())));
+    }
+    let mut bytes = Vec::new();
+    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
+        .write_image(samples, columns, rows, ExtendedColorType::Rgb8)
+        .map_err(|error| mismatch(error.to_string()))?;
+    Ok(bytes)
+}
