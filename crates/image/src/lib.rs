@@ -4,6 +4,7 @@ pub mod colour;
 mod error;
 mod image;
 mod limits;
+pub mod metrics;
 mod read;
 pub mod tonemap;
 mod write;

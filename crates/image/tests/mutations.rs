@@ -1,0 +1,114 @@
+//! Damaged files of every format: a byte changed, a piece cut, a word made huge. Each is an error or an image, in
+//! bounded time, and no decoder panics.
+
+use image::codecs::{bmp::BmpEncoder, hdr::HdrEncoder, jpeg::JpegEncoder, tga::TgaEncoder};
+use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, Rgb};
+use photinus_image::{Image, Layers, decode_bytes, encode_exr, image_from_bytes, layers_from_bytes};
+use std::io::Cursor;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const SEED: u64 = 0x7068_6f74;
+/// Damaged copies of each file.
+const ROUNDS: usize = 400;
+
+/// A small generator of its own: the tests need arbitrary, not good, numbers.
+struct Arbitrary(u64);
+
+impl Arbitrary {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % bound
+    }
+}
+
+fn sound_files() -> Vec<(&'static str, Vec<u8>)> {
+    let (width, height) = (40u32, 30u32);
+    let samples: Vec<u8> = (0..width * height * 3).map(|i| (i * 7 % 251) as u8).collect();
+    let rgb = |encoder: &dyn Fn(&mut Cursor<Vec<u8>>)| {
+        let mut bytes = Cursor::new(Vec::new());
+        encoder(&mut bytes);
+        bytes.into_inner()
+    };
+    let kind = ExtendedColorType::Rgb8;
+    let picture = DynamicImage::ImageRgb8(image::RgbImage::from_raw(width, height, samples.clone()).unwrap());
+    let hdr: Vec<Rgb<f32>> = samples.chunks(3).map(|p| Rgb([p[0], p[1], p[2]].map(f32::from))).collect();
+    let linear = Image { width: width as usize, height: height as usize, pixels: hdr.iter().map(|p| p.0).collect() };
+    let mut layers = Layers::from_image(&linear);
+    layers.metadata.insert("seed".to_string(), "7".to_string());
+    vec![
+        ("a.exr", encode_exr(&layers).unwrap()),
+        ("a.png", rgb(&|w| picture.write_to(w, ImageFormat::Png).unwrap())),
+        ("b.png", rgb(&|w| DynamicImage::ImageRgba16(picture.to_rgba16()).write_to(w, ImageFormat::Png).unwrap())),
+        ("a.jpg", rgb(&|w| JpegEncoder::new(w).write_image(&samples, width, height, kind).unwrap())),
+        ("a.bmp", rgb(&|w| BmpEncoder::new(w).write_image(&samples, width, height, kind).unwrap())),
+        ("a.tga", rgb(&|w| TgaEncoder::new(w).write_image(&samples, width, height, kind).unwrap())),
+        ("a.hdr", rgb(&|w| HdrEncoder::new(w).encode(&hdr, width as usize, height as usize).unwrap())),
+    ]
+}
+
+fn damage(bytes: &[u8], arbitrary: &mut Arbitrary) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    // Half of all damage goes into the header, where it hurts most.
+    let reach = if arbitrary.below(2) == 0 { bytes.len().min(400) } else { bytes.len() };
+    for _ in 0..1 + arbitrary.below(4) {
+        let at = arbitrary.below(reach.min(bytes.len()));
+        match arbitrary.below(6) {
+            0 => bytes[at] = arbitrary.below(256) as u8,
+            1 => bytes[at] ^= 1 << arbitrary.below(8),
+            2 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff][arbitrary.below(5)],
+            3 => {
+                let end = (at + 4).min(bytes.len());
+                let word = [[0xff; 4], [0xff, 0xff, 0xff, 0x7f], [0, 0, 0, 0x80], [0; 4]][arbitrary.below(4)];
+                bytes[at..end].copy_from_slice(&word[..end - at]);
+            }
+            4 => {
+                let end = (at + 1 + arbitrary.below(9)).min(bytes.len());
+                bytes.drain(at..end);
+            }
+            _ => bytes.truncate(at.max(1)),
+        }
+        if bytes.is_empty() {
+            break;
+        }
+    }
+    bytes
+}
+
+#[test]
+fn damaged_files_are_errors_or_images() {
+    let rounds = std::env::var("PHOTINUS_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(ROUNDS);
+    let panics = std::sync::Arc::new(AtomicUsize::new(0));
+    let counter = panics.clone();
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        counter.fetch_add(1, Ordering::Relaxed);
+        eprintln!("{info}");
+    }));
+    let (mut images, mut errors, mut gave_up) = (0, 0, Vec::new());
+    for (name, sound) in sound_files() {
+        assert!(image_from_bytes(&sound, name).is_ok(), "{name}");
+        let mut arbitrary = Arbitrary(SEED);
+        for round in 0..rounds {
+            let bytes = damage(&sound, &mut arbitrary);
+            match image_from_bytes(&bytes, name) {
+                Ok(image) => {
+                    assert_eq!(image.pixels.len(), image.width * image.height);
+                    images += 1;
+                }
+                Err(error) => {
+                    assert_eq!(error.to_string().lines().count(), 1, "{error}");
+                    if error.what.contains("gave up") {
+                        gave_up.push(format!("{name} round {round}"));
+                    }
+                    errors += 1;
+                }
+            }
+            assert_eq!(decode_bytes(&bytes, name).is_ok(), image_from_bytes(&bytes, name).is_ok());
+            let _ = layers_from_bytes(&bytes, name);
+        }
+    }
+    std::panic::set_hook(before);
+    eprintln!("seed {SEED:#x}: {images} images, {errors} errors, {} panics caught", gave_up.len());
+    assert!(images > 0 && errors > 0);
+    assert!(gave_up.is_empty(), "decoders panicked: {gave_up:?}");
+}
