@@ -1,4 +1,11 @@
-//! Image files in and out, colour and image metrics.
+//! Image files in and out, colour, tone curves and image metrics.
+//!
+//! Pictures are linear RGB (Rec. 709 primaries, D65 white), 32-bit floats, the top row first.
+//!
+//! * Reading: [`read_image`] for pictures, [`decode`] for textures as stored, [`read_layers`] for EXR with AOVs. The
+//!   content decides the format; [`Limits`] are checked before anything is allocated; a damaged file is an [`ImageError`].
+//! * Writing: [`write_exr`] and [`write_png`], whole or not at all, the same bytes for the same image.
+//! * [`tonemap`], [`colour`] and [`metrics`] hold tone curves, spectra and comparisons.
 
 pub mod colour;
 mod error;

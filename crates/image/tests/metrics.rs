@@ -1,4 +1,6 @@
 //! Metrics against numbers worked out by hand, FLIP's published properties, and the references of the real scenes.
+// Whoever runs the tests must see what did not run, and the seed.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use photinus_image::metrics::{compare, compare_files, flip, flip_map, psnr, relmse, relmse_trimmed};
 use photinus_image::{Image, ImageErrorKind};

@@ -1,6 +1,12 @@
 //! Damaged files of every format: a byte changed, a piece cut, a word made huge. Each is an error or an image, in
 //! bounded time, and no decoder panics.
+// Whoever runs the tests must see what did not run, and the seed.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
+use exr::image::{Encoding, Image as ExrImage, Layer as ExrLayer, SpecificChannels};
+use exr::meta::attribute::LineOrder;
+use exr::meta::header::LayerAttributes;
+use exr::prelude::{Blocks, Compression, Vec2, WritableImage, f16};
 use image::codecs::{bmp::BmpEncoder, hdr::HdrEncoder, jpeg::JpegEncoder, tga::TgaEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, Rgb};
 use photinus_image::{Image, Layers, decode_bytes, encode_exr, image_from_bytes, layers_from_bytes};
@@ -35,7 +41,8 @@ fn sound_files() -> Vec<(&'static str, Vec<u8>)> {
     let linear = Image { width: width as usize, height: height as usize, pixels: hdr.iter().map(|p| p.0).collect() };
     let mut layers = Layers::from_image(&linear);
     layers.metadata.insert("seed".to_string(), "7".to_string());
-    vec![
+    let mut files = exr_files(&linear);
+    files.extend([
         ("a.exr", encode_exr(&layers).unwrap()),
         ("a.png", rgb(&|w| picture.write_to(w, ImageFormat::Png).unwrap())),
         ("b.png", rgb(&|w| DynamicImage::ImageRgba16(picture.to_rgba16()).write_to(w, ImageFormat::Png).unwrap())),
@@ -43,7 +50,35 @@ fn sound_files() -> Vec<(&'static str, Vec<u8>)> {
         ("a.bmp", rgb(&|w| BmpEncoder::new(w).write_image(&samples, width, height, kind).unwrap())),
         ("a.tga", rgb(&|w| TgaEncoder::new(w).write_image(&samples, width, height, kind).unwrap())),
         ("a.hdr", rgb(&|w| HdrEncoder::new(w).encode(&hdr, width as usize, height as usize).unwrap())),
-    ]
+    ]);
+    files
+}
+
+/// One file for each way of compressing, in half precision: lines for some, tiles for the others.
+fn exr_files(image: &Image) -> Vec<(&'static str, Vec<u8>)> {
+    let kinds = [
+        ("rle.exr", Compression::RLE),
+        ("zips.exr", Compression::ZIP1),
+        ("piz.exr", Compression::PIZ),
+        ("pxr24.exr", Compression::PXR24),
+        ("b44.exr", Compression::B44),
+        ("b44a.exr", Compression::B44A),
+        ("dwaa.exr", Compression::DWAA(None)),
+        ("none.exr", Compression::Uncompressed),
+    ];
+    let write = |(i, (name, compression)): (usize, (&'static str, Compression))| {
+        let channels = SpecificChannels::rgb(|at: Vec2<usize>| {
+            let [r, g, b] = image.at(at.0, at.1).map(|c| f16::from_f32(c / 250.0));
+            (r, g, b)
+        });
+        let blocks = if i % 2 == 0 { Blocks::ScanLines } else { Blocks::Tiles(Vec2(16, 16)) };
+        let encoding = Encoding { compression, blocks, line_order: LineOrder::Increasing };
+        let layer = ExrLayer::new((image.width, image.height), LayerAttributes::named("rgb"), encoding, channels);
+        let mut bytes = Vec::new();
+        ExrImage::from_layer(layer).write().non_parallel().to_buffered(Cursor::new(&mut bytes)).unwrap();
+        (name, bytes)
+    };
+    kinds.into_iter().enumerate().map(write).collect()
 }
 
 fn damage(bytes: &[u8], arbitrary: &mut Arbitrary) -> Vec<u8> {

@@ -1,16 +1,17 @@
 //! OpenEXR through the `exr` crate's block level: headers first, then sizes, then one block after another.
 
+use super::dwa;
 use super::texels::{DecodedImage, Texels};
 use crate::error::{ImageError, Result};
 use crate::image::{Channel, Image, Layer, Layers, split_channel_name};
 use crate::limits::Limits;
 use exr::block::UncompressedBlock;
-use exr::block::chunk::Chunk;
+use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock};
 use exr::error::Error as CodecError;
 use exr::meta::attribute::{AttributeValue, SampleType, Text};
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
-use exr::prelude::{Vec2, f16};
+use exr::prelude::{Compression, Vec2, f16};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
@@ -135,6 +136,16 @@ fn full_resolution_chunks<'a>(
 
 fn decompress(mut chunk: &[u8], meta: &MetaData) -> exr::error::Result<UncompressedBlock> {
     let chunk = Chunk::read(&mut chunk, meta)?;
+    let header = &meta.headers[chunk.layer_index];
+    if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
+        let place = header.get_block_data_indices(&chunk.compressed_block)?;
+        let size = header.get_absolute_block_pixel_coordinates(place)?.size;
+        if let CompressedBlock::ScanLine(CompressedScanLineBlock { compressed_pixels_le: data, .. })
+        | CompressedBlock::Tile(CompressedTileBlock { compressed_pixels_le: data, .. }) = &chunk.compressed_block
+        {
+            dwa::check(data, size, header)?;
+        }
+    }
     UncompressedBlock::decompress_chunk(chunk, meta, false)
 }
 

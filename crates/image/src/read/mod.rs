@@ -1,5 +1,6 @@
 //! Reading image files: the format comes from the content, sizes are checked before anything is allocated.
 
+mod dwa;
 mod exr;
 mod format;
 mod raster;

@@ -35,3 +35,16 @@ pub(super) fn map(rgb: [f32; 3]) -> [f32; 3] {
     });
     apply(&OUTSET, encoded).map(|c| libm::powf(c.max(0.0), 2.2))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outset_undoes_inset() {
+        for v in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.3, 0.7, 0.1]] {
+            let back = apply(&OUTSET, apply(&INSET, v));
+            assert!((0..3).all(|c| (back[c] - v[c]).abs() < 1e-5), "{v:?} became {back:?}");
+        }
+    }
+}
