@@ -73,8 +73,7 @@ pub(super) fn corner_normals(
     triangles: &[[u32; 3]],
     smooth: impl Fn(usize, usize, f32) -> bool,
 ) -> CornerNormals {
-    let faces: Vec<Option<Vec3>> =
-        triangles.iter().map(|t| face_normal(t.map(|v| positions[v as usize]))).collect();
+    let faces: Vec<Option<Vec3>> = triangles.iter().map(|t| face_normal(t.map(|v| positions[v as usize]))).collect();
 
     // Sorted by end points, then by face: faces at one edge are neighbours, in an order that is always the same.
     let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(triangles.len() * 3);

@@ -25,7 +25,7 @@ pub(super) struct Triangulator {
 }
 
 /// Steps (a few nanoseconds each) that one file may spend beyond [`STEPS_PER_CORNER`].
-const SHARED_STEPS: u64 = 1 << 28;
+const SHARED_STEPS: u64 = 1 << 27;
 /// Steps that every corner of a polygon adds to the budget.
 const STEPS_PER_CORNER: u64 = 256;
 

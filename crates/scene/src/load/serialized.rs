@@ -229,4 +229,5 @@ fn damaged(error: &std::io::Error) -> String {
 }
 
 #[cfg(test)]
+#[path = "serialized_tests.rs"]
 mod tests;

@@ -187,7 +187,7 @@ pub(super) fn parse_i64(word: &[u8]) -> Option<i64> {
         [b'+', rest @ ..] => (false, rest),
         _ => (false, word),
     };
-    if digits.is_empty() || digits.len() > 18 {
+    if digits.is_empty() {
         return None;
     }
     let mut value = 0i64;
@@ -195,7 +195,7 @@ pub(super) fn parse_i64(word: &[u8]) -> Option<i64> {
         if !d.is_ascii_digit() {
             return None;
         }
-        value = value * 10 + i64::from(d - b'0');
+        value = value.checked_mul(10)?.checked_add(i64::from(d - b'0'))?;
     }
     Some(if negative { -value } else { value })
 }

@@ -59,7 +59,7 @@ struct Converter<'a, 'c> {
     context: &'a mut Context<'c>,
 }
 
-impl Converter<'_, '_> {
+impl<'c> Converter<'_, 'c> {
     fn warn(&mut self, message: &str) {
         let place = Place::new(&self.library.path, self.raw.line);
         self.context.warn(&place, format!("material \"{}\": {message}", self.raw.name));
@@ -78,7 +78,7 @@ impl Converter<'_, '_> {
         }
     }
 
-    fn textures(&mut self) -> Textures<'_, '_> {
+    fn textures(&mut self) -> Textures<'_, 'c> {
         Textures { library: self.library, draft: self.draft, context: self.context }
     }
 

@@ -91,10 +91,7 @@ pub(crate) struct RawLibrary {
 pub(crate) fn parse(bytes: &[u8]) -> RawLibrary {
     let bytes = super::super::text::decode(bytes);
     let first_line = bytes.split(|&b| b == b'\n').find(|l| !l.trim_ascii().is_empty()).unwrap_or_default();
-    let mut library = RawLibrary {
-        from_blender: first_line.starts_with(b"# Blender"),
-        ..RawLibrary::default()
-    };
+    let mut library = RawLibrary { from_blender: first_line.starts_with(b"# Blender"), ..RawLibrary::default() };
     let mut text = Text::new(&bytes);
     while !text.is_at_end() {
         if let Some(keyword) = text.word() {

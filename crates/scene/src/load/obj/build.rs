@@ -139,9 +139,7 @@ fn triangles(raw: &mut RawObj) -> (Vec<ObjPart>, Vec<Triangle>) {
                 Verdict::Crossing => crossing.add(face.line),
                 Verdict::Degenerate => degenerate.add(face.line),
             }
-            triangles.extend(
-                cut.iter().map(|t| Triangle { corners: t.map(|i| corners[i as usize]), part, smoothing }),
-            );
+            triangles.extend(cut.iter().map(|t| Triangle { corners: t.map(|i| corners[i as usize]), part, smoothing }));
         }
     }
     degenerate.report(&mut raw.notes, "polygon(s) without area: skipped");
@@ -150,12 +148,7 @@ fn triangles(raw: &mut RawObj) -> (Vec<ObjPart>, Vec<Triangle>) {
 }
 
 /// Gives corners without a normal one, as `missing` says, and returns the normals made.
-fn generate_normals(
-    raw: &RawObj,
-    triangles: &mut [Triangle],
-    part_count: usize,
-    missing: MissingNormals,
-) -> Vec<Vec3> {
+fn generate_normals(raw: &RawObj, triangles: &mut [Triangle], part_count: usize, missing: MissingNormals) -> Vec<Vec3> {
     let mut given = vec![false; part_count];
     let mut lacking = vec![false; part_count];
     for t in triangles.iter() {
@@ -170,8 +163,7 @@ fn generate_normals(
     }
 
     let points = weld(&raw.positions);
-    let corners: Vec<[u32; 3]> =
-        triangles.iter().map(|t| t.corners.map(|c| points.ids[c.position as usize])).collect();
+    let corners: Vec<[u32; 3]> = triangles.iter().map(|t| t.corners.map(|c| points.ids[c.position as usize])).collect();
     let made = corner_normals(&points.positions, &corners, |a, b, cosine| match missing {
         MissingNormals::LeaveOut => false,
         MissingNormals::AsFileSays { crease_cosine } => {
@@ -183,7 +175,7 @@ fn generate_normals(
     // A part whose faces are all flat needs no normals: the face normal is the default.
     let mut users = vec![0u32; made.normals.len()];
     made.ids.iter().for_each(|&id| users[id as usize] += 1);
-    let mut worth = given;
+    let mut worth = given.clone();
     for (t, ids) in triangles.iter().zip(made.ids.chunks_exact(3)) {
         worth[t.part as usize] |= ids.iter().any(|&id| users[id as usize] > 1);
     }

@@ -70,12 +70,7 @@ pub fn read_obj(place: &Place, path: &Path, context: &mut Context<'_>) -> Result
     read(place, path, MissingNormals::LeaveOut, context)
 }
 
-fn read(
-    place: &Place,
-    path: &Path,
-    missing: MissingNormals,
-    context: &mut Context<'_>,
-) -> Result<ObjFile, LoadError> {
+fn read(place: &Place, path: &Path, missing: MissingNormals, context: &mut Context<'_>) -> Result<ObjFile, LoadError> {
     let bytes = context.read(place, path)?;
     let in_file = |fault: super::text::Fault| fault.in_file(path);
     let (file, notes) = from_bytes(&bytes, missing).map_err(in_file)?;

@@ -227,7 +227,8 @@ impl<'a> Parser<'a> {
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; empty parts count as absent.
     #[inline]
     fn corner(&self, word: &[u8], line: u32) -> Result<Corner, Fault> {
-        let wrong = || Fault::new(line, format!("face corner {} is not of the form v, v/vt, v//vn or v/vt/vn", quoted(word)));
+        let wrong =
+            || Fault::new(line, format!("face corner {} is not of the form v, v/vt, v//vn or v/vt/vn", quoted(word)));
         let mut parts = [0i64; 3];
         let mut given = [false; 3];
         let (mut part, mut negative) = (0, false);
@@ -271,9 +272,7 @@ impl<'a> Parser<'a> {
     /// The names that hold from here on, to be changed.
     fn pending(&mut self) -> &mut Run {
         let last = self.out.runs.last().copied();
-        self.run.get_or_insert_with(|| {
-            last.unwrap_or(Run { first_face: 0, material: None, group: None, smoothing: 0 })
-        })
+        self.run.get_or_insert_with(|| last.unwrap_or(Run { first_face: 0, material: None, group: None, smoothing: 0 }))
     }
 
     fn use_material(&mut self) {
@@ -319,8 +318,30 @@ impl<'a> Parser<'a> {
     fn other(&mut self, keyword: &[u8]) {
         /// Statements without a meaning for polygons: display attributes, and tags of subdivision surfaces.
         const SILENT: &[&str] = &[
-            "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "end", "t", "usemap",
-            "maplib", "mtl", "parm", "deg", "bmat", "step", "cstype", "trim", "hole", "scrv", "sp", "con", "ctech",
+            "vp",
+            "mg",
+            "bevel",
+            "c_interp",
+            "d_interp",
+            "lod",
+            "shadow_obj",
+            "trace_obj",
+            "end",
+            "t",
+            "usemap",
+            "maplib",
+            "mtl",
+            "parm",
+            "deg",
+            "bmat",
+            "step",
+            "cstype",
+            "trim",
+            "hole",
+            "scrv",
+            "sp",
+            "con",
+            "ctech",
             "stech",
         ];
         let line = self.text.line();

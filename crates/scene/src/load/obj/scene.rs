@@ -71,12 +71,7 @@ fn read_libraries(path: &Path, named: &[(u32, PathBuf)], context: &mut Context<'
 
 /// The files of one `mtllib` statement. Names may hold blanks, with or without a backslash before them, and several
 /// may follow each other: the whole is tried first, then what ends in ".mtl".
-fn find_libraries(
-    place: &Place,
-    names: &str,
-    folder: &Path,
-    context: &Context<'_>,
-) -> Vec<Result<PathBuf, LoadError>> {
+fn find_libraries(place: &Place, names: &str, folder: &Path, context: &Context<'_>) -> Vec<Result<PathBuf, LoadError>> {
     let folders = [folder.to_path_buf()];
     let whole = context.resolve(place, names, &folders);
     if whole.is_ok() {
