@@ -4,6 +4,13 @@ use super::*;
 use crate::{ColorInput, FloatInput, Geometry, Light, Material, Mesh, TextureKind};
 use photinus_geometry::{Aabb, Vec3};
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// Every entry with its scene, built once for all tests.
+fn built() -> impl Iterator<Item = (&'static Builtin, &'static Scene)> {
+    static SCENES: OnceLock<Vec<Scene>> = OnceLock::new();
+    list().iter().zip(SCENES.get_or_init(|| list().iter().map(Builtin::build).collect()))
+}
 
 fn meshes(scene: &Scene) -> impl Iterator<Item = (&str, &Mesh)> {
     scene.shapes.iter().filter_map(|s| match &s.geometry {
@@ -26,8 +33,7 @@ fn names_are_unique_and_descriptions_are_one_sentence() {
 
 #[test]
 fn every_scene_has_its_triangles_a_name_and_light() {
-    for entry in list() {
-        let scene = entry.build();
+    for (entry, scene) in built() {
         assert_eq!(scene.triangle_count(), entry.triangles, "{}", entry.name);
         assert_eq!(scene.name, entry.name);
         assert!(scene.warnings.is_empty());
@@ -43,16 +49,15 @@ fn every_scene_has_its_triangles_a_name_and_light() {
 
 #[test]
 fn two_builds_are_equal() {
-    for entry in list() {
-        assert!(entry.build() == entry.build(), "{}", entry.name);
+    for (entry, scene) in built() {
+        assert!(entry.build() == *scene, "{}", entry.name);
     }
 }
 
 #[test]
 fn meshes_are_finite_indexed_in_range_and_not_degenerate() {
-    for entry in list() {
-        let scene = entry.build();
-        for (name, mesh) in meshes(&scene) {
+    for (entry, scene) in built() {
+        for (name, mesh) in meshes(scene) {
             check_mesh(&format!("{}: {name}", entry.name), mesh);
         }
     }
@@ -149,8 +154,7 @@ pub(super) fn closed_volume(at: &str, mesh: &Mesh) -> Vec<Option<f32>> {
 /// Closed bodies face outwards, but for a room that holds the camera, which faces inwards; what refracts is closed.
 #[test]
 fn closed_parts_face_outwards_and_glass_is_closed() {
-    for entry in list() {
-        let scene = entry.build();
+    for (entry, scene) in built() {
         for shape in &scene.shapes {
             let Geometry::Mesh(mesh) = &shape.geometry else { continue };
             let at = format!("{}: {}", entry.name, shape.name);
@@ -170,8 +174,7 @@ fn closed_parts_face_outwards_and_glass_is_closed() {
 
 #[test]
 fn materials_and_textures_are_in_range_and_nested_ones_come_first() {
-    for entry in list() {
-        let scene = entry.build();
+    for (entry, scene) in built() {
         for shape in &scene.shapes {
             assert!((shape.material.0 as usize) < scene.materials.len(), "{}: {}", entry.name, shape.name);
         }
@@ -221,8 +224,7 @@ fn textures_of(material: &Material) -> Vec<crate::TextureId> {
 /// A textured shape carries texture coordinates, and no material that reads a bitmap meets a mesh without them.
 #[test]
 fn textured_meshes_have_texture_coordinates() {
-    for entry in list() {
-        let scene = entry.build();
+    for (entry, scene) in built() {
         let textured = |id: crate::MaterialId| {
             let mut open = vec![id];
             while let Some(m) = open.pop() {

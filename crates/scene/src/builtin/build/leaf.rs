@@ -49,8 +49,8 @@ impl LeafShape {
 ///
 /// With r pieces of the midrib a leaf has 4 r - 4 triangles; up to three more are cut into its margin.
 pub fn leaf(shape: LeafShape, triangles: usize) -> Part {
-    let pieces = triangles / 4 + 1;
-    let extra = triangles - 4 * (pieces - 1);
+    let pieces = (triangles / 4).max(1) + 1;
+    let extra = triangles.saturating_sub(4 * (pieces - 1));
     let mut part = Part::default();
     let share = |i: usize| i as f32 / pieces as f32;
     let rib: Vec<u32> = (0..=pieces)
@@ -111,7 +111,8 @@ pub fn blade(shape: LeafShape, triangles: usize) -> Part {
     part.smoothed()
 }
 
-/// A petal that grows along +z from the origin and curls up (+y) towards its tip; 2 `nu` `nv` - `nu` triangles.
+/// A petal that grows along +z from the origin and curls up (+y) towards its pointed tip; 2 `nu` `nv` - `nu`
+/// triangles, u across and v along it.
 ///
 /// `rise`: by how much the tip stands above the base, as a share of the length; `cup`: how far its sides stand up,
 /// as a share of the width.
@@ -120,7 +121,19 @@ pub fn petal(length: f32, width: f32, rise: f32, cup: f32, nu: usize, nv: usize)
         let side = 1.0 - 2.0 * u;
         let (sin, _) = sin_cos_degrees(180.0 * libm::powf(v, 0.8) * 0.86);
         let half = 0.5 * width * sin;
-        let tip = 0.07 * length * side * side * v;
-        Vec3::new(side * half, length * rise * v * v + width * cup * side * side * sin, length * v - tip)
+        let point = 0.16 * length * side * side * v * v;
+        Vec3::new(side * half, length * rise * v * v + width * cup * side * side * sin, length * v - point)
+    })
+}
+
+/// A floating lily pad: a disc of this radius with a notch towards +z and a rim that curls up; `nu` cells around and
+/// `nv` from the middle, 2 `nu` `nv` - `nu` triangles.
+pub fn lily_pad(radius: f32, nu: usize, nv: usize) -> Part {
+    patch(nu, nv, Join::Open, |u, v| {
+        let (sin, cos) = sin_cos_degrees(104.0 + 332.0 * u);
+        let (wave, _) = sin_cos_degrees(360.0 * 5.0 * u);
+        let v4 = v * v * v * v;
+        let r = radius * v * (1.0 - 0.02 * v4);
+        Vec3::new(r * cos, radius * (0.07 * v4 * v4 + 0.018 * wave * v4), r * sin)
     })
 }

@@ -77,10 +77,9 @@ pub fn revolve(outline: &[[f32; 2]], segments: usize) -> Part {
 
 /// The outline of a vessel: `outer` from the rim of its foot to its lip, closed below, with walls of this thickness.
 ///
-/// The inside follows the outside; both ends are on the axis, so that the body is closed.
-pub fn hollow(outer: &[[f32; 2]], thickness: f32) -> Vec<[f32; 2]> {
+/// The inside follows the outside down to the height `floor`; both ends are on the axis, so that the body is closed.
+pub fn hollow(outer: &[[f32; 2]], thickness: f32, floor: f32) -> Vec<[f32; 2]> {
     let (foot, lip) = (outer[0], outer[outer.len() - 1]);
-    let floor = foot[1] + thickness;
     let mut out = vec![[0.0, foot[1]]];
     out.extend_from_slice(outer);
     out.push([lip[0] - 0.5 * thickness, lip[1] + 0.4 * thickness]);

@@ -36,7 +36,7 @@ fn bodies_of_revolution_have_their_volumes() {
     let sphere = 4.0 / 3.0 * std::f32::consts::PI;
     assert_near(volume(revolve(&ball(1.0, 5.0, 20), 40), 2 * 40 * 19), sphere, 0.02);
     let outer = profile(&[[1.0, 0.0], [2.0, 1.5], [1.2, 3.0]], 6);
-    let body = revolve(&hollow(&outer, 0.1), 32);
+    let body = revolve(&hollow(&outer, 0.1, 0.1), 32);
     let triangles = body.triangle_count();
     let v = volume(body, triangles).expect("a vessel is closed");
     assert!(v > 0.5 && v < 6.0, "{v}");

@@ -5,12 +5,14 @@
 mod cloth;
 mod noise;
 mod paintings;
+mod plants;
 mod stone;
 mod wood;
 mod world;
 
 pub use cloth::{rug, stripes, weave};
 pub use paintings::{blocks, circles, hills};
+pub use plants::{pad, petal, scales};
 pub use stone::{brick, checker, marble, pebbles};
 pub use wood::{grain, planks};
 pub use world::world;

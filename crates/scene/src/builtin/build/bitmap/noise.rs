@@ -28,11 +28,11 @@ impl Noise {
         let (fx, fy) = (x.floor(), y.floor());
         let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
         let (tx, ty) = (smooth(x - fx), smooth(y - fy));
-        let value = |dx: i64, dy: i64| {
-            self.cell((fx as i64 + dx).rem_euclid(period[0]), (fy as i64 + dy).rem_euclid(period[1]))
-        };
-        let low = value(0, 0) * (1.0 - tx) + value(1, 0) * tx;
-        let high = value(0, 1) * (1.0 - tx) + value(1, 1) * tx;
+        let wrap = |i: f32, period: i64| (i as i32).rem_euclid(period as i32) as usize;
+        let (x0, x1) = (wrap(fx, period[0]), wrap(fx + 1.0, period[0]));
+        let (y0, y1) = (CELLS * wrap(fy, period[1]), CELLS * wrap(fy + 1.0, period[1]));
+        let low = self.lattice[y0 + x0] * (1.0 - tx) + self.lattice[y0 + x1] * tx;
+        let high = self.lattice[y1 + x0] * (1.0 - tx) + self.lattice[y1 + x1] * tx;
         low * (1.0 - ty) + high * ty
     }
 
