@@ -5,7 +5,6 @@ mod context;
 mod defaults;
 mod draft;
 mod error;
-mod inflate;
 pub mod list;
 mod mitsuba;
 mod mtl;
@@ -13,17 +12,14 @@ mod normals;
 mod obj;
 mod options;
 mod ply;
-mod polygon;
 mod serialized;
 mod stl;
-mod tally;
-mod text;
-mod weld;
 
 pub use bitmap::BitmapEncoding;
 pub use context::Context;
 pub use draft::Draft;
 pub use error::{LoadError, Place};
+pub use mitsuba::names as mitsuba_plugins;
 pub use options::LoadOptions;
 
 use crate::Scene;

@@ -59,7 +59,8 @@ pub struct Camera {
     pub mirrored: bool,
     /// The projection.
     pub projection: Projection,
-    /// Shift of the picture's middle, as a fraction of its width and height.
+    /// Shift of the picture's middle, as a fraction of its width and height: what is seen at (x, y), from 0 to 1 and y
+    /// down, is what an unshifted camera sees at (x + shift, y + shift).
     pub principal_point: [f32; 2],
     /// Nothing nearer is seen, in scene units along the view direction.
     pub near_clip: f32,

@@ -29,7 +29,9 @@ pub enum Geometry {
         sphere: Sphere,
         /// Normals point inwards.
         flip_normals: bool,
-        /// World-space directions of the local x, y and z axes, which place the texture coordinates.
+        /// World-space unit directions of the local x, y and z axes, which place the texture coordinates: a point in
+        /// local direction d has u = atan2(d.y, d.x) / 2 pi (wrapped to 0..1) and v = 1 - acos(d.z) / pi, so v = 1 is
+        /// the +z pole. Left-handed where the sphere was mirrored.
         axes: [Vec3; 3],
     },
 }

@@ -112,7 +112,8 @@ pub enum TextureKind {
     VertexColor,
 }
 
-/// A texture: its values and how texture coordinates reach them.
+/// A texture: its values and how texture coordinates reach them. A texture that another one reads comes before it: no
+/// cycles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// File name or id, for messages.

@@ -1,0 +1,11 @@
+//! The Mitsuba importer and exporter: every plug-in, every value, every way to be wrong, and the real scenes.
+
+mod bsdfs;
+mod cameras;
+mod common;
+mod emitters;
+mod nasty;
+mod scenes;
+mod shapes;
+mod textures;
+mod values;
