@@ -7,7 +7,7 @@ fn every_curve_is_bounded_and_monotone_in_grey() {
     for tonemap in TONEMAPS {
         let mut before = -1.0;
         for step in -200..200 {
-            let light = (f64::from(step) / 10.0).exp2() as f32;
+            let light = libm::exp2(f64::from(step) / 10.0) as f32;
             let [r, g, b] = tonemap.map([light; 3]);
             assert!((r - g).abs() < 2e-3 && (g - b).abs() < 2e-3, "{}: grey {light} became {r} {g} {b}", tonemap.name);
             assert!(
