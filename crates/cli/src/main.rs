@@ -1,2 +1,38 @@
-//! The command `photinus`.
-fn main() {}
+//! The command `photinus`: arguments in, exit codes out; the work is done by the library of the same name.
+
+mod args;
+mod commands;
+mod failure;
+mod interrupt;
+mod progress;
+mod report;
+
+use args::{Cli, Command};
+use clap::Parser;
+use failure::{Failure, Outcome};
+use std::process::ExitCode;
+use std::time::Instant;
+
+fn main() -> ExitCode {
+    let begun = Instant::now();
+    let outcome = match Cli::parse().command {
+        Command::Render(args) => commands::render::run(&args, begun),
+        Command::Info(args) => commands::info::run(&args),
+        Command::Scenes(args) => commands::scenes::run(&args),
+        Command::Tree(args) => commands::tree::run(&args),
+        Command::Compare(args) => commands::compare::run(&args),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
+        Err(failure) => {
+            report::error(&failure.to_string());
+            ExitCode::from(match failure {
+                Failure::Input(_) => 1,
+                Failure::Usage(_) => 2,
+                // Whoever reads our output went away: nothing is wrong, and nobody is there to be told.
+                Failure::OutputClosed => return ExitCode::SUCCESS,
+            })
+        }
+    }
+}

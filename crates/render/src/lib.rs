@@ -23,7 +23,7 @@ mod world;
 pub use camera::{CameraModel, CameraRay};
 pub use control::{Cancelled, Observer, Phase, Silent};
 pub use counters::{Counters, PhotonCounts, PhotonPower, RayCounts};
-pub use film::{Aov, FilmLayout};
+pub use film::{Aov, Film, FilmLayout};
 pub use light::{LightSample, Lights, PhotonStart, VisibleRegion};
 pub use renderer::{RenderError, Renderer};
 pub use settings::{Mode, Settings};

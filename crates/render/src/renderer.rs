@@ -121,6 +121,11 @@ impl<'w> Renderer<'w> {
         self.film.passes()
     }
 
+    /// Whether there is anything to be seen: a finished pass, or what a stopped first one has done.
+    pub fn has_picture(&self) -> bool {
+        self.film.passes() > 0 || self.partial.is_some()
+    }
+
     /// Where outputs lie among the channels of [`Renderer::pixels`].
     pub fn layout(&self) -> &FilmLayout {
         &self.layout

@@ -6,6 +6,7 @@
 pub mod builtin;
 pub mod load;
 pub mod model;
+pub mod tessellate;
 pub mod shapes;
 
 pub use load::{LoadError, LoadOptions, load};

@@ -1,0 +1,112 @@
+//! The command line as clap sees it. Names of members and their descriptions come from the families' lists.
+
+mod members;
+mod render;
+mod values;
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+pub use render::{Output, RenderArgs};
+
+/// Renders scenes by photon mapping.
+#[derive(Debug, Parser)]
+#[command(name = "photinus", version, max_term_width = 100, disable_help_subcommand = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene into a PNG or EXR picture
+    Render(Box<RenderArgs>),
+    /// Describe a scene: triangles, materials, lights, camera, bounds, warnings
+    Info(InfoArgs),
+    /// List the built-in scenes, or write one as Mitsuba XML and PLY
+    Scenes(ScenesArgs),
+    /// Build an acceleration structure over a scene and describe it
+    Tree(TreeArgs),
+    /// Compare a picture with a reference
+    Compare(CompareArgs),
+}
+
+/// Where a scene comes from.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// Let the scene read files outside the folder of its own file
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+/// `photinus info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// A scene file or the name of a built-in scene
+    pub scene: String,
+    #[command(flatten)]
+    pub source: SceneArgs,
+    /// Print one JSON document
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `photinus scenes`.
+#[derive(Debug, Args)]
+pub struct ScenesArgs {
+    #[command(subcommand)]
+    pub command: Option<ScenesCommand>,
+    /// Print one JSON document
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+/// What to do with the built-in scenes.
+#[derive(Debug, Subcommand)]
+pub enum ScenesCommand {
+    /// List the built-in scenes (what happens where nothing is said)
+    List,
+}
+
+/// `photinus tree`.
+#[derive(Debug, Args)]
+pub struct TreeArgs {
+    /// A scene file or the name of a built-in scene
+    pub scene: String,
+    #[command(flatten)]
+    pub source: SceneArgs,
+    /// The acceleration structure
+    #[arg(long, value_name = "NAME", default_value = photinus::names::ACCEL.default,
+        value_parser = members::parser(photinus::names::ACCEL))]
+    pub accel: String,
+    /// Cost of visiting a node in the surface-area heuristic, relative to --triangle-cost
+    #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = values::positive)]
+    pub node_cost: f64,
+    /// Cost of testing a triangle in the surface-area heuristic
+    #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = values::positive)]
+    pub triangle_cost: f64,
+    /// Where a kd-tree may be split
+    #[arg(long, value_name = "NAME", default_value = photinus::names::CANDIDATES.default,
+        value_parser = members::parser(photinus::names::CANDIDATES))]
+    pub candidates: String,
+    /// Print one JSON document
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `photinus compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// The picture
+    pub a: PathBuf,
+    /// The reference
+    pub b: PathBuf,
+    /// Count only the pixels that are white in this picture
+    #[arg(long, value_name = "M.png")]
+    pub mask: Option<PathBuf>,
+    /// Print one JSON document
+    #[arg(long)]
+    pub json: bool,
+}

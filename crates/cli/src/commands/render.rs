@@ -1,0 +1,234 @@
+//! `photinus render`: a scene into a picture.
+
+use crate::args::{Output, RenderArgs};
+use crate::failure::{Failure, Outcome, Result};
+use crate::interrupt::Interrupts;
+use crate::progress::{PassSize, Progress};
+use crate::report;
+use photinus::names;
+use photinus::render::{
+    Observer, PassState, Phase, Picture, RenderOptions, Session, Settings, Stats, Stop, StopReason, View, Watcher,
+};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A long render rewrites its picture at least this often.
+const AUTOSAVE: Duration = Duration::from_secs(30);
+
+/// Renders. `begun` is when the program started.
+pub fn run(args: &RenderArgs, begun: Instant) -> Result {
+    refuse_unbuilt(args)?;
+    let interrupts = Interrupts::listen();
+    let options = options(args, begun)?;
+    let scene = super::open(&args.scene, args.allow_outside)?;
+    let target = Target::new(args, &scene.name)?;
+    if !args.quiet {
+        super::warn(&scene);
+    }
+    let opened = begun.elapsed().as_secs_f64();
+    let contents = format!("{} triangles, {} spheres", report::count(scene.triangle_count() as u64), spheres(&scene));
+    let session = Session::new(scene, options)?;
+    let progress = Progress::new(args.quiet, session.options().stop, pass_size(&session));
+    progress.line(&format!("scene {}: {contents}, {opened:.2} s", session.scene_name()));
+    let structure = session.structure();
+    progress.line(&format!(
+        "{}: depth {}, {}, {:.2} s",
+        structure.name,
+        structure.depth,
+        report::bytes(structure.bytes),
+        session.build_secs()
+    ));
+    for note in session.notes() {
+        report::warning(note);
+    }
+    progress.line(&format!("memory: {} predicted", report::bytes(session.predict_memory().total_bytes)));
+
+    let monitor = Monitor { progress, interrupts, target, saved: Mutex::new(Instant::now()) };
+    monitor.interrupts.keep_results();
+    let rendered = session.render(&monitor)?;
+    monitor.progress.finish();
+    let Monitor { progress, target, .. } = monitor;
+
+    if let Some(picture) = &rendered.picture {
+        target.save(picture)?;
+    }
+    let stats = &rendered.stats;
+    let document = Document { output: rendered.picture.is_some().then_some(target.path()), stats };
+    if let Some(path) = &args.stats {
+        photinus::write_json(path, &document)?;
+    }
+    if args.json {
+        report::json(&document)?;
+    }
+    progress.line(&summary(&document));
+    Ok(if stats.stopped == StopReason::Interrupted { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// What `--json` prints and `--stats` writes.
+#[derive(Serialize)]
+struct Document<'a> {
+    /// The picture's file; none where there is no picture.
+    output: Option<&'a Path>,
+    #[serde(flatten)]
+    stats: &'a Stats,
+}
+
+fn summary(document: &Document<'_>) -> String {
+    let Stats { passes, seconds, stopped, .. } = document.stats;
+    let how = if *stopped == StopReason::Interrupted { "interrupted" } else { "done" };
+    match document.output {
+        Some(path) => format!("{how}: {passes} passes, {:.1} s, {}", seconds.wall_secs, path.display()),
+        None => format!("{how} before there was a picture, {:.1} s", seconds.wall_secs),
+    }
+}
+
+/// Options that belong to the contract and are not built yet are refused, never ignored.
+fn refuse_unbuilt(args: &RenderArgs) -> std::result::Result<(), Failure> {
+    let unbuilt = [
+        (args.denoise, "--denoise"),
+        (args.resume.is_some(), "--resume"),
+        (args.record_queries.is_some(), "--record-queries"),
+        (args.hardware.is_some(), "--hardware"),
+    ];
+    if let Some((_, option)) = unbuilt.iter().find(|(given, _)| *given) {
+        return Err(Failure::Usage(format!("{option}: not built yet; leave it out")));
+    }
+    if args.backend != names::BACKEND.default {
+        let message = format!("--backend: {} is not built yet; use {}", args.backend, names::BACKEND.default);
+        return Err(Failure::Usage(message));
+    }
+    Ok(())
+}
+
+fn options(args: &RenderArgs, begun: Instant) -> std::result::Result<RenderOptions, Failure> {
+    let mut aovs = Vec::new();
+    for name in &args.aov {
+        let aov = names::aov(name)?;
+        if !aovs.contains(&aov) {
+            aovs.push(aov);
+        }
+    }
+    Ok(RenderOptions {
+        settings: Settings {
+            mode: names::mode(&args.mode)?,
+            photons: args.photons,
+            radius: args.radius,
+            knn: args.knn,
+            spp: args.spp,
+            max_depth: args.max_depth,
+            seed: args.seed,
+            search: args.search.clone(),
+            aovs,
+            ..Settings::default()
+        },
+        accel: args.accel.clone(),
+        intersect: args.intersect.clone(),
+        surface_model: names::surface_model(&args.surface_model)?,
+        size: args.size.map(|size| [size.width, size.height]),
+        view: args.camera.map(|camera| View {
+            origin: camera.origin.into(),
+            target: camera.target.into(),
+            up: camera.up.into(),
+            fov_degrees: camera.fov_degrees,
+        }),
+        crop: args.crop,
+        tessellate: args.tessellate,
+        threads: args.threads,
+        stop: Stop {
+            time_secs: args.time,
+            cpu_secs: args.cpu_time,
+            passes: args.passes,
+            target_error: args.target_error,
+            begun,
+        },
+    })
+}
+
+fn spheres(scene: &photinus::Scene) -> u64 {
+    photinus::SceneInfo::of(scene).spheres
+}
+
+fn pass_size(session: &Session) -> PassSize {
+    let [_, _, width, height] = session.window();
+    let settings = &session.options().settings;
+    PassSize {
+        samples: f64::from(width) * f64::from(height) * f64::from(settings.spp),
+        photons: settings.photons.map_or(0.0, f64::from),
+    }
+}
+
+/// Where the picture goes.
+struct Target {
+    output: Output,
+    tonemap: photinus::Tonemap,
+    exposure: f32,
+}
+
+impl Target {
+    /// Checks what would only be noticed at the end of a long render.
+    fn new(args: &RenderArgs, scene_name: &str) -> std::result::Result<Self, Failure> {
+        let output = args.output.clone().unwrap_or_else(|| Output::Png(PathBuf::from(format!("{scene_name}.png"))));
+        if let (Output::Png(_), [_, ..]) = (&output, args.aov.as_slice()) {
+            return Err(Failure::Usage("--aov: PNG files hold no layers; write to a file that ends in .exr".into()));
+        }
+        let target = Self { output, tonemap: names::tonemap(&args.tonemap)?, exposure: args.exposure };
+        for path in [Some(target.path()), args.stats.as_deref()].into_iter().flatten() {
+            photinus::check_writable(path)?;
+        }
+        Ok(target)
+    }
+
+    fn path(&self) -> &Path {
+        match &self.output {
+            Output::Png(path) | Output::Exr(path) => path,
+        }
+    }
+
+    fn save(&self, picture: &Picture) -> photinus::Result<()> {
+        match &self.output {
+            Output::Png(path) => picture.write_png(path, self.tonemap, self.exposure),
+            Output::Exr(path) => picture.write_exr(path),
+        }
+    }
+}
+
+/// Watches the render on behalf of the person in front of it.
+struct Monitor {
+    progress: Progress,
+    interrupts: Interrupts,
+    target: Target,
+    /// When the picture was last written, or the render began.
+    saved: Mutex<Instant>,
+}
+
+impl Observer for Monitor {
+    fn begin(&self, phase: Phase, pass: u32) {
+        self.progress.begin(phase, pass);
+    }
+
+    fn progress(&self, done: u64, total: u64) {
+        self.progress.advance(done, total);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.interrupts.requested()
+    }
+}
+
+impl Watcher for Monitor {
+    fn pass_done(&self, state: &PassState<'_>) {
+        self.progress.pass_done(state.passes, state.error, state.last);
+        let mut saved = self.saved.lock().unwrap_or_else(PoisonError::into_inner);
+        // Another pass of this length must not make the picture older than allowed.
+        let due = saved.elapsed() + Duration::from_secs_f64(state.pass_secs) >= AUTOSAVE;
+        if due && !state.last {
+            // The last write reports the same trouble as an error; until then the render goes on.
+            if let Err(error) = self.target.save(&state.picture()) {
+                self.progress.line(&format!("photinus: warning: {error}"));
+            }
+            *saved = Instant::now();
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! `photinus scenes`: the built-in scenes, listed or written as files.
+
+use crate::args::{ScenesArgs, ScenesCommand};
+use crate::failure::{Outcome, Result};
+use crate::report;
+use serde_json::json;
+
+/// Lists or writes.
+pub fn run(args: &ScenesArgs) -> Result {
+    match &args.command {
+        None | Some(ScenesCommand::List) => list(args.json),
+    }
+}
+
+fn list(json: bool) -> Result {
+    let scenes = photinus::built_in_scenes();
+    if json {
+        report::json(&json!({ "scenes": scenes }))?;
+    } else {
+        let rows = scenes
+            .iter()
+            .map(|s| (s.name, format!("{:>7} triangles  {}", report::count(s.triangles as u64), s.description)));
+        report::table(&rows.collect::<Vec<_>>())?;
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,116 @@
+//! JSON documents: one on standard output, nothing else, with the fields that scripts depend on.
+
+mod common;
+
+use common::{SMALL, json, run, run_in, stderr, success};
+use serde_json::Value;
+
+#[track_caller]
+fn has(document: &Value, fields: &[&str]) {
+    for field in fields {
+        let mut value = document;
+        for part in field.split('.') {
+            value = value.get(part).unwrap_or_else(|| panic!("no field {field} in {document:#}"));
+        }
+    }
+}
+
+#[test]
+fn info() {
+    let document = json(&run(&["info", "two-spheres", "--json"]));
+    has(&document, &["triangles", "meshes", "materials", "lights", "textures", "camera", "bounds", "warnings"]);
+    assert_eq!(document["triangles"], 22);
+    assert_eq!(document["spheres"], 2);
+    assert_eq!(document["warnings"].as_array().map(Vec::len), Some(0));
+    let lines = success(&run(&["info", "two-spheres"]));
+    assert!(lines.lines().any(|line| line.starts_with("triangles") && line.ends_with("22")), "{lines}");
+}
+
+#[test]
+fn scenes() {
+    let document = json(&run(&["scenes", "--json"]));
+    let scenes = document["scenes"].as_array().unwrap();
+    assert_eq!(document, json(&run(&["scenes", "list", "--json"])));
+    assert_eq!(scenes[0]["name"], "two-spheres");
+    for scene in scenes {
+        let name = scene["name"].as_str().unwrap();
+        let info = json(&run(&["info", name, "--json"]));
+        assert_eq!(info["triangles"], scene["triangles"], "{name}");
+    }
+}
+
+#[test]
+fn tree() {
+    let document = json(&run(&["tree", "cornell", "--json"]));
+    has(&document, &["scene", "triangles", "build_secs", "name", "depth", "nodes", "leaves", "references", "bytes"]);
+    success(&run(&["tree", "cornell", "--accel", "brute-force"]));
+}
+
+#[test]
+fn render_and_compare() {
+    let folder = tempfile::tempdir().unwrap();
+    let render =
+        |output: &str, more: &[&str]| run_in(folder.path(), &[&["render", "-o", output], SMALL, more].concat());
+    let output = render("a.exr", &["--json", "--stats", "a.json", "--aov", "depth,normal"]);
+    let document = json(&output);
+    assert_eq!(stderr(&output), "", "--quiet");
+    let file: Value = serde_json::from_slice(&std::fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+    assert_eq!(document, file, "--json prints what --stats writes");
+    has(
+        &document,
+        &[
+            "output",
+            "passes",
+            "stopped",
+            "threads",
+            "seed",
+            "version",
+            "machine.cpu",
+            "phases.build.wall_secs",
+            "phases.photon_pass.cpu_secs",
+            "phases.map_build.wall_secs",
+            "phases.eye_pass.cpu_secs",
+            "rays.emitted",
+            "rays.photon",
+            "rays.camera",
+            "rays.specular",
+            "rays.shadow",
+            "rays.gather",
+            "intersect.tests",
+            "intersect.tests_per_ray",
+            "intersect.seconds",
+            "accel.nodes_visited",
+            "accel.leaves_per_ray",
+            "accel.triangles_per_leaf",
+            "accel.depth",
+            "accel.seconds",
+            "search.searches",
+            "search.photons_found_mean",
+            "search.photons_tested",
+            "search.seconds",
+            "photons.emitted",
+            "photons.stored",
+            "photons.absorbed",
+            "photons.escaped",
+            "photons.power.emitted",
+            "other",
+            "memory.peak_bytes",
+            "memory.by_owner",
+        ],
+    );
+    assert_eq!(document["passes"], 3);
+    assert_eq!(document["stopped"], "passes");
+    assert_eq!(document["photons"]["emitted"], 9000, "three passes of 3000");
+    assert_eq!(document["rays"]["camera"], 24 * 20 * 3);
+    for (count, least) in [("intersect", "tests_per_ray"), ("search", "photons_found_mean")] {
+        assert!(document[count][least].as_f64().unwrap() > 0.0, "{count}.{least}");
+    }
+
+    success(&render("b.exr", &["--seed", "1"]));
+    let compare = |b: &str| json(&run_in(folder.path(), &["compare", "a.exr", b, "--json"]));
+    let same = compare("a.exr");
+    has(&same, &["relmse", "relmse_trimmed", "psnr", "flip", "mean_a", "mean_b", "nonfinite"]);
+    assert_eq!((same["relmse"].as_f64(), same["flip"].as_f64()), (Some(0.0), Some(0.0)));
+    assert_eq!(same["mean_a"], same["mean_b"]);
+    assert!(compare("b.exr")["relmse"].as_f64().unwrap() > 0.0, "another seed gives another picture");
+}

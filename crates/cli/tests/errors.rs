@@ -1,0 +1,132 @@
+//! Exit codes, and errors as one clear line.
+
+mod common;
+
+use common::{SMALL, refused, run, run_in, stderr, stdout, success};
+use std::process::Stdio;
+
+#[test]
+fn wrong_usage_is_exit_code_two() {
+    let cases: &[&[&str]] = &[
+        &[],
+        &["paint"],
+        &["info"],
+        &["render", "--passes", "0"],
+        &["render", "--passes", "-3"],
+        &["render", "--size", "0x5"],
+        &["render", "--size", "12"],
+        &["render", "--time", "soon"],
+        &["render", "--camera", "1,2,3"],
+        &["render", "--crop", "1,2,0,4"],
+        &["render", "--threads", "0"],
+        &["render", "--unheard-of"],
+        &["render", "-o", "picture.jpg"],
+        &["render", "--mode", "progresive"],
+        &["compare", "a.exr"],
+        &["tree", "cornell", "--node-cost", "nan"],
+    ];
+    for arguments in cases {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        assert_eq!(stdout(&output), "", "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_misspelt_member_gets_a_suggestion() {
+    for (option, typed, meant) in [
+        ("--mode", "progresive", "progressive"),
+        ("--accel", "wide-bhv", "wide-bvh"),
+        ("--intersect", "baduel", "badouel"),
+        ("--search", "kd-balancd", "kd-balanced"),
+        ("--tonemap", "film", "filmic"),
+    ] {
+        let said = stderr(&run(&["render", option, typed]));
+        assert!(said.contains(&format!("'{meant}'")), "{option} {typed}: {said}");
+    }
+}
+
+#[test]
+fn underscores_are_accepted_in_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [&["render", "two_spheres", "--accel", "brute_force", "--search", "kd_balanced"], SMALL].concat();
+    success(&run_in(folder.path(), &arguments));
+    assert!(folder.path().join("two-spheres.png").exists());
+}
+
+#[test]
+fn an_unknown_scene_gets_a_suggestion() {
+    let said = refused(&run(&["render", "two-sphere"]), 1);
+    assert_eq!(
+        said,
+        "photinus: two-sphere: no such file and no built-in scene of that name; did you mean two-spheres?"
+    );
+    let said = refused(&run(&["info", "qqqq"]), 1);
+    assert!(said.contains("there are two-spheres, small-lamp, "), "{said}");
+}
+
+#[test]
+fn bad_files_are_exit_code_one_with_their_name() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("scene.pbrt"), "WorldBegin\n").unwrap();
+    std::fs::write(folder.path().join("scene.blend"), "BLENDER\n").unwrap();
+    std::fs::write(folder.path().join("scene.xyzzy"), "plugh\n").unwrap();
+    std::fs::create_dir(folder.path().join("folder.xml")).unwrap();
+    let info = |name| refused(&run_in(folder.path(), &["info", name]), 1);
+    assert!(info("scene.pbrt").contains("scene.pbrt: the pbrt format is not supported; supported are Mitsuba XML"));
+    assert!(info("scene.blend").contains("a Blender file is not supported"));
+    assert!(info("scene.xyzzy").contains("the format .xyzzy is not supported"));
+    assert!(info("missing.xml").contains("missing.xml: cannot read"));
+    assert!(info("folder.xml").contains("not a regular file"));
+    let said = refused(&run_in(folder.path(), &["compare", "a.exr", "b.exr"]), 1);
+    assert!(said.contains("a.exr"), "{said}");
+}
+
+#[test]
+fn places_that_cannot_be_written_are_refused_before_the_work() {
+    let said = refused(&run(&["render", "--passes", "1000000", "-o", "missing/folder/a.png"]), 1);
+    assert!(said.contains("missing/folder/a.png: cannot be written"), "{said}");
+    let said = refused(&run(&["render", "--passes", "1000000", "--stats", "missing/a.json"]), 1);
+    assert!(said.contains("missing/a.json: cannot be written"), "{said}");
+}
+
+#[test]
+fn windows_outside_the_picture_are_refused() {
+    let said = refused(&run(&["render", "--size", "32x32", "--crop", "20,20,20,20"]), 1);
+    assert!(said.contains("--crop: the window 20,20,20,20 does not lie in the picture of 32 x 32 pixels"), "{said}");
+}
+
+#[test]
+fn what_is_not_built_is_refused_and_never_ignored() {
+    for (arguments, word) in [
+        (&["--denoise"][..], "--denoise"),
+        (&["--resume", "x.exr"], "--resume"),
+        (&["--record-queries", "q.bin"], "--record-queries"),
+        (&["--hardware", "thesis"], "--hardware"),
+        (&["--backend", "lns"], "--backend"),
+        (&["--backend", "cycle"], "--backend"),
+        (&["--backend", "rtl"], "--backend"),
+    ] {
+        let said = refused(&run(&[&["render"], arguments].concat()), 2);
+        assert!(said.contains(word) && said.contains("not built yet"), "{said}");
+    }
+    let said = refused(&run(&["render", "--aov", "depth", "-o", "a.png"]), 2);
+    assert!(said.contains("--aov: PNG files hold no layers"), "{said}");
+}
+
+#[test]
+fn messages_stay_on_one_line_whatever_a_name_holds() {
+    let said = refused(&run(&["info", "two\nlines\u{1b}[31m.xml"]), 1);
+    assert!(!said.contains('\u{1b}'), "{said:?}");
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = common::photinus(folder.path());
+    let mut child = command.args(["scenes"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{:?} {}", output.status, stderr(&output));
+    assert_eq!(stderr(&output), "");
+}

@@ -1,0 +1,98 @@
+//! Ctrl-C writes the image so far; a killed program leaves the old file or the new one.
+
+#![cfg(unix)]
+
+mod common;
+
+use common::{photinus, run_in, success};
+use rustix::process::{Pid, Signal, kill_process};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+/// A render that would take hours.
+const LONG: &[&str] = &["render", "--size", "64x64", "--photons", "3000", "--passes", "10000000", "-o", "a.png"];
+
+fn start(folder: &Path, arguments: &[&str]) -> Child {
+    photinus(folder).args(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn send(child: &Child, signal: Signal) {
+    let pid = Pid::from_raw(i32::try_from(child.id()).unwrap()).unwrap();
+    kill_process(pid, signal).unwrap();
+}
+
+/// Waits until the program says that it has finished a first pass; returns the reader, which must stay open.
+fn first_pass(child: &mut Child) -> impl BufRead + use<> {
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.starts_with("eye pass: ") {
+        line.clear();
+        assert!(lines.read_line(&mut line).unwrap() > 0, "the program ended before its first pass");
+    }
+    lines
+}
+
+fn is_png(path: &Path) -> bool {
+    let read = photinus::image::read_image(path);
+    read.is_ok_and(|image| (image.width, image.height) == (64, 64))
+}
+
+#[test]
+fn an_interrupt_writes_the_image_so_far() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = start(folder.path(), &[LONG, &["--stats", "a.json"]].concat());
+    let mut rest = first_pass(&mut child);
+    let begun = Instant::now();
+    send(&child, Signal::INT);
+    let status = child.wait().unwrap();
+    let took = begun.elapsed();
+    assert_eq!(status.code(), Some(130));
+    // The promise is one second on a machine of its own; tests share theirs.
+    assert!(took < Duration::from_secs(3), "{took:?}");
+    assert!(is_png(&folder.path().join("a.png")));
+    let stats: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+    assert_eq!(stats["stopped"], "interrupted");
+    assert!(stats["passes"].as_u64().unwrap() >= 1);
+    let mut said = String::new();
+    std::io::Read::read_to_string(&mut rest, &mut said).unwrap();
+    assert!(said.contains("interrupted: "), "{said}");
+}
+
+#[test]
+fn a_kill_leaves_the_old_file_or_the_new_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let short = ["render", "--size", "64x64", "--photons", "500", "--passes", "2", "--quiet", "-o", "a.png"];
+    let begun = Instant::now();
+    success(&run_in(folder.path(), &short));
+    let whole = begun.elapsed();
+    let path = folder.path().join("a.png");
+    let good = std::fs::read(&path).unwrap();
+    let old = b"the file that was there".to_vec();
+    for trial in 0..12u32 {
+        std::fs::write(&path, &old).unwrap();
+        let mut child = start(folder.path(), &short);
+        // Around the end of the run, where the file is written.
+        std::thread::sleep(whole.mul_f64(0.7 + 0.05 * f64::from(trial)));
+        // A program that has ended already needs no kill.
+        child.kill().ok();
+        child.wait().unwrap();
+        let found = std::fs::read(&path).unwrap();
+        assert!(found == old || found == good, "trial {trial}: a file of {} bytes, neither old nor new", found.len());
+    }
+}
+
+#[test]
+fn a_second_interrupt_ends_the_program_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    // One eye pass of this render takes minutes, and its picture is never wanted.
+    let mut child = start(folder.path(), &[LONG, &["--spp", "2"]].concat());
+    let _rest = first_pass(&mut child);
+    send(&child, Signal::INT);
+    send(&child, Signal::INT);
+    let begun = Instant::now();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(begun.elapsed() < Duration::from_secs(3));
+}

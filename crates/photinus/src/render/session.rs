@@ -1,0 +1,271 @@
+//! A session: a scene made ready once, then rendered and asked about.
+
+use super::memory::MemoryPrediction;
+use super::picture::Picture;
+use super::stats::{
+    AccelStats, IntersectStats, MemoryStats, PhaseStats, PhotonStats, RayStats, SearchStats, Seconds, Stats,
+};
+use super::stop::{Spent, StopReason};
+use super::timeline::Timeline;
+use super::{RenderOptions, Stop};
+use crate::machine::{Machine, cpu_seconds};
+use crate::query_clock::{QueryClock, TimedStructure};
+use crate::{Error, Result};
+use photinus_accel::{BuildOptions, StructureSummary};
+use photinus_geometry::{Hit, Ray};
+use photinus_render::{Compiled, Mode, Observer, Phase, RenderError, Renderer, World};
+use photinus_scene::Scene;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A scene ready to be rendered.
+pub struct Session {
+    world: World,
+    options: RenderOptions,
+    pool: ThreadPool,
+    clock: Arc<QueryClock>,
+    structure: StructureSummary,
+    build: Seconds,
+    notes: Vec<String>,
+}
+
+/// Listens to a render: phases and progress as an [`Observer`], and every finished pass.
+pub trait Watcher: Observer {
+    /// A pass has been finished.
+    fn pass_done(&self, _state: &PassState<'_>) {}
+}
+
+impl Watcher for photinus_render::Silent {}
+
+/// The state of a render between two passes.
+pub struct PassState<'a> {
+    /// Passes finished.
+    pub passes: u32,
+    /// Mean relative squared error of the pixels, estimated from the passes; none where it is not asked for.
+    pub error: Option<f64>,
+    /// Wall seconds of the latest pass.
+    pub pass_secs: f64,
+    /// Whether this was the last one.
+    pub last: bool,
+    picture: &'a dyn Fn() -> Picture,
+}
+
+impl PassState<'_> {
+    /// The picture so far.
+    pub fn picture(&self) -> Picture {
+        (self.picture)()
+    }
+}
+
+/// What came out of a render.
+pub struct Rendered {
+    /// The picture; none where the render was stopped before it had any.
+    pub picture: Option<Picture>,
+    /// What was counted and measured.
+    pub stats: Stats,
+}
+
+impl Session {
+    /// Checks the options, compiles the scene and builds the structure.
+    ///
+    /// # Errors
+    /// [`Error::Setting`], [`Error::UnknownName`] or [`Error::Structure`] for what does not fit.
+    pub fn new(mut scene: Scene, options: RenderOptions) -> Result<Self> {
+        options.check()?;
+        options.apply(&mut scene)?;
+        let notes = options.tessellate_spheres(&mut scene)?.into_iter().collect();
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(options.threads.unwrap_or(0))
+            .build()
+            .map_err(|e| Error::setting("--threads", format!("they cannot be started: {e}")))?;
+        let (begun, cpu) = (Instant::now(), cpu_seconds());
+        let clock = Arc::new(QueryClock::default());
+        let (world, structure) = pool.install(|| -> Result<(World, StructureSummary)> {
+            let compiled = Compiled::new(scene);
+            let build = BuildOptions { method: options.intersect.clone(), ..BuildOptions::default() };
+            let structure = photinus_accel::build(&options.accel, compiled.primitives().clone(), &build)?;
+            let summary = structure.summary();
+            let timed = TimedStructure::new(structure, clock.clone());
+            Ok((compiled.with_structure(Box::new(timed), options.surface_model), summary))
+        })?;
+        let build = Seconds { wall_secs: begun.elapsed().as_secs_f64(), cpu_secs: cpu_seconds() - cpu };
+        Ok(Self { world, options, pool, clock, structure, build, notes })
+    }
+
+    /// The structure that was built.
+    pub fn structure(&self) -> &StructureSummary {
+        &self.structure
+    }
+
+    /// Wall seconds that compiling the scene and building the structure took.
+    pub fn build_secs(&self) -> f64 {
+        self.build.wall_secs
+    }
+
+    /// What was done otherwise than asked for, one line each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Threads that work.
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// Name of the scene.
+    pub fn scene_name(&self) -> &str {
+        &self.world.name
+    }
+
+    /// Window of the picture that is rendered: x, y, width, height in pixels.
+    pub fn window(&self) -> [u32; 4] {
+        self.world.film.crop.unwrap_or([0, 0, self.world.film.width, self.world.film.height])
+    }
+
+    /// The options.
+    pub fn options(&self) -> &RenderOptions {
+        &self.options
+    }
+
+    /// The most memory that a render will hold.
+    pub fn predict_memory(&self) -> MemoryPrediction {
+        MemoryPrediction::of(&self.world, &self.options, &self.structure, self.threads())
+    }
+
+    /// The nearest hit of each ray within its interval; `hits` is as long as `rays`.
+    pub fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.world.structure().closest_hit(rays, hits);
+    }
+
+    /// Whether each ray hits anything within its interval; `occluded` is as long as `rays`.
+    pub fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.world.structure().any_hit(rays, occluded);
+    }
+
+    /// Renders until a stop condition is met or the watcher cancels.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the photons cannot be searched.
+    pub fn render(&self, watcher: &dyn Watcher) -> Result<Rendered> {
+        self.pool.install(|| self.run(watcher))
+    }
+
+    fn run(&self, watcher: &dyn Watcher) -> Result<Rendered> {
+        let stop = self.options.stop;
+        let timeline = Timeline::new(watcher);
+        let prediction = self.predict_memory();
+        self.clock.reset();
+        let mut settings = self.options.settings.clone();
+        settings.track_error |= stop.target_error.is_some();
+        let mut renderer = match Renderer::new(&self.world, settings, &timeline) {
+            Ok(renderer) => Some(renderer),
+            Err(RenderError::Cancelled(_)) => None,
+            Err(error) => return Err(error.into()),
+        };
+        let mut reason = StopReason::Interrupted;
+        if let Some(renderer) = &mut renderer {
+            reason = self.passes(renderer, stop, &timeline, watcher)?;
+        }
+        timeline.end();
+        let stats = self.stats(renderer.as_ref(), reason, &timeline, &prediction);
+        let picture = renderer.as_ref().filter(|r| r.has_picture()).map(|r| self.picture(r));
+        Ok(Rendered { picture, stats })
+    }
+
+    /// Runs passes until the render is over.
+    fn passes(
+        &self,
+        renderer: &mut Renderer<'_>,
+        stop: Stop,
+        timeline: &Timeline<'_>,
+        watcher: &dyn Watcher,
+    ) -> Result<StopReason> {
+        loop {
+            let (before_secs, before_cpu) = stop.clock();
+            match renderer.render_pass(timeline) {
+                Ok(()) => timeline.end(),
+                Err(RenderError::Cancelled(_)) => return Ok(StopReason::Interrupted),
+                Err(error) => return Err(error.into()),
+            }
+            let (elapsed_secs, cpu_secs) = stop.clock();
+            let spent = Spent {
+                passes: renderer.passes(),
+                elapsed_secs,
+                cpu_secs,
+                pass_secs: elapsed_secs - before_secs,
+                pass_cpu_secs: cpu_secs - before_cpu,
+                error: stop.target_error.and_then(|_| renderer.estimated_error()),
+            };
+            let reason = stop.reached(&spent);
+            watcher.pass_done(&PassState {
+                passes: spent.passes,
+                error: spent.error,
+                pass_secs: spent.pass_secs,
+                last: reason.is_some(),
+                picture: &|| self.picture(renderer),
+            });
+            if let Some(reason) = reason {
+                return Ok(reason);
+            }
+        }
+    }
+
+    fn picture(&self, renderer: &Renderer<'_>) -> Picture {
+        let [_, _, width, height] = renderer.window();
+        let settings = &self.options.settings;
+        let about = [
+            ("scene", self.world.name.clone()),
+            ("mode", settings.mode.name().to_owned()),
+            ("passes", renderer.passes().to_string()),
+            ("spp", settings.spp.to_string()),
+            ("photons", renderer.photons().to_string()),
+            ("seed", settings.seed.to_string()),
+            ("software", concat!("photinus ", env!("CARGO_PKG_VERSION")).to_owned()),
+        ];
+        Picture::new(&renderer.pixels(), renderer.layout(), width, height, &about)
+    }
+
+    fn stats(
+        &self,
+        renderer: Option<&Renderer<'_>>,
+        stopped: StopReason,
+        timeline: &Timeline<'_>,
+        prediction: &MemoryPrediction,
+    ) -> Stats {
+        let counters = renderer.map(|r| *r.counters()).unwrap_or_default();
+        let (wall_secs, cpu_secs) = self.options.stop.clock();
+        let [_, _, width, height] = self.window();
+        let query_secs = self.clock.seconds();
+        let settings = &self.options.settings;
+        Stats {
+            scene: self.world.name.clone(),
+            size: [width, height],
+            passes: renderer.map_or(0, Renderer::passes),
+            stopped,
+            estimated_error: renderer.and_then(Renderer::estimated_error),
+            first_radii: renderer.filter(|_| settings.mode != Mode::Path).map(Renderer::radii),
+            seconds: Seconds { wall_secs, cpu_secs },
+            phases: PhaseStats {
+                build: self.build,
+                pilot: timeline.spent(Phase::Pilot),
+                photon_pass: timeline.spent(Phase::PhotonPass),
+                map_build: timeline.spent(Phase::MapBuild),
+                eye_pass: timeline.spent(Phase::EyePass),
+            },
+            rays: RayStats::of(&counters),
+            intersect: IntersectStats::of(&counters, query_secs),
+            accel: AccelStats::of(&counters, self.structure.clone(), query_secs),
+            search: SearchStats::of(&counters, &settings.search),
+            photons: PhotonStats::of(&counters),
+            other: BTreeMap::new(),
+            memory: MemoryStats::of(prediction),
+            threads: self.threads(),
+            seed: settings.seed,
+            settings: settings.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            machine: Machine::this(),
+        }
+    }
+}
