@@ -203,10 +203,9 @@ impl Film {
         mean
     }
 
-    /// Bytes after `passes` passes.
-    pub fn predicted_bytes(values: usize, passes: u32) -> usize {
-        let levels = 32 - passes.max(1).leading_zeros() as usize;
-        values * 4 * (levels + 1)
+    /// Most buffers that are held at once by the end of pass number `passes`, the one in flight included.
+    pub fn buffers(passes: u32) -> u64 {
+        u64::from(32 - passes.max(1).leading_zeros()) + 1
     }
 }
 

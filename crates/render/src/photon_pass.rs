@@ -156,7 +156,7 @@ impl PhotonPass {
         let u = walk.sampler.next_2d();
         let guided = outside(lights.region(), point.position) && lights.aims() && bsdf.has(LobeSet::NON_DELTA);
         let sample = if guided {
-            guided_sample(&bsdf, lights.region(), point.position, wo, choice, u)
+            guided_sample(&bsdf, lights.region(), point.position, choice, u)
         } else {
             bsdf.sample(LobeSet::ALL, choice, u, TransportMode::Importance)
                 .map(|s| (s.wi, s.weight, s.kind.intersects(LobeSet::CONTINUE)))
@@ -225,7 +225,6 @@ fn guided_sample(
     bsdf: &Bsdf,
     region: VisibleRegion,
     position: Vec3,
-    wo: Vec3,
     choice: f32,
     u: [f32; 2],
 ) -> Option<(Vec3, Vec3, bool)> {

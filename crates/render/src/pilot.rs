@@ -40,6 +40,14 @@ pub(crate) struct Radii {
     pub caustic: f32,
 }
 
+/// What the pilot photons said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PhotonOutlook {
+    pub radii: Radii,
+    /// Photons stored for each one emitted.
+    pub stored: f32,
+}
+
 /// Follows one ray for each cell of a grid over the picture to the first surface that keeps photons.
 pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4], seed: u64) -> Vec<VisiblePoint> {
     let mut paths: Vec<(Ray, f32, f32, Sampler)> = (0..GRID * GRID)
@@ -112,18 +120,19 @@ pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleR
     if radius > 0.7 * whole.radius || !(radius > 0.0) { whole } else { VisibleRegion { center, radius } }
 }
 
-/// What the photons of a pilot pass say about radii, for `photons` photons a pass.
-pub(crate) fn first_radii(
+/// What the photons of a pilot pass say about radii and memory, for `photons` photons a pass.
+pub(crate) fn photon_outlook(
     world: &World,
     lights: &Lights,
     points: &[VisiblePoint],
     pass: PhotonPass,
     photons: u32,
     observer: &dyn Observer,
-) -> Result<Radii, Cancelled> {
+) -> Result<PhotonOutlook, Cancelled> {
     let count = photons.min(PHOTONS);
     let pilot = PhotonPass { kind: StreamKind::Pilot, pass: 0, count, ..pass };
-    let (stored, _) = pilot.run(world, lights, observer)?;
+    let (stored, counters) = pilot.run(world, lights, observer)?;
+    let share = counters.photons.stored as f32 / count.max(1) as f32;
     let scale = |target: f32| (target / NEIGHBORS as f32 * count as f32 / photons as f32).sqrt();
     let width = median(points.iter().map(|p| p.width)).unwrap_or(0.0);
     let fallback = 0.02 * lights.region().radius;
@@ -133,11 +142,11 @@ pub(crate) fn first_radii(
     let caustic = typical_distance(&caustic_positions, stored.caustic, 0.5).map(|r| r * scale(CAUSTIC_TARGET));
     let global = global.unwrap_or(fallback).max(width).max(1e-9);
     if pass.keep == Keep::All {
-        return Ok(Radii { global, caustic: global });
+        return Ok(PhotonOutlook { radii: Radii { global, caustic: global }, stored: share });
     }
     // A caustic needs no finer radius than a pixel, and where it is as smooth as the rest no wider one than that.
     let caustic = caustic.unwrap_or(global).clamp((0.7 * width).min(global), global);
-    Ok(Radii { global, caustic })
+    Ok(PhotonOutlook { radii: Radii { global, caustic }, stored: share })
 }
 
 /// Positions of evenly chosen photons.

@@ -9,8 +9,9 @@ use crate::film::{Aov, Film, FilmLayout};
 use crate::film_filter::FilterSampler;
 use crate::light::Lights;
 use crate::maps::{Map, Maps};
+use crate::memory::RenderMemory;
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons};
-use crate::pilot::{self, Radii};
+use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
 use crate::world::World;
 use photinus_num::StreamKind;
@@ -42,6 +43,8 @@ pub struct Renderer<'w> {
     photons: u32,
     lights: Lights,
     radii: Radii,
+    /// Photons stored for each one emitted, by the pilot.
+    stored_share: f32,
     /// Maps that all passes share, in the modes with one photon map.
     shared_maps: Option<Maps>,
     film: Film,
@@ -83,6 +86,7 @@ impl<'w> Renderer<'w> {
             photons,
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
+            stored_share: 0.0,
             shared_maps: None,
             film: Film::new(0),
             partial: None,
@@ -91,11 +95,13 @@ impl<'w> Renderer<'w> {
         };
         renderer.film = Film::new(pixels * renderer.layout.channels());
         if renderer.settings.mode != Mode::Path {
+            let pass = renderer.photon_pass(0);
+            let PhotonOutlook { radii, stored } =
+                pilot::photon_outlook(world, &renderer.lights, &points, pass, photons, observer)?;
+            renderer.stored_share = stored;
             renderer.radii = match renderer.settings.radius {
                 Some(radius) => Radii { global: radius, caustic: radius },
-                None => {
-                    pilot::first_radii(world, &renderer.lights, &points, renderer.photon_pass(0), photons, observer)?
-                }
+                None => radii,
             };
         }
         Ok(renderer)
@@ -134,6 +140,13 @@ impl<'w> Renderer<'w> {
     /// Window of the film that is rendered: x, y, width, height.
     pub fn window(&self) -> [u32; 4] {
         self.crop
+    }
+
+    /// What the render will hold at its peak after `passes` passes, beside the world itself.
+    pub fn predicted_memory(&self, passes: u32) -> RenderMemory {
+        let stored = (f64::from(self.photons) * f64::from(self.stored_share)) as u64;
+        let pixels = u64::from(self.crop[2]) * u64::from(self.crop[3]);
+        RenderMemory::predict(pixels * self.layout.channels() as u64, passes, stored, self.lights.bytes() as u64)
     }
 
     /// Lights of the scene.
