@@ -1,6 +1,6 @@
 //! The list of built-in scenes: it feeds the command line, the help, the documentation and the tests.
 
-use super::{Builtin, cornell, furnace, two_spheres};
+use super::{Builtin, cornell, furnace, spheres, texture, two_spheres, water_lily};
 
 const SCENES: &[Builtin] = &[
     Builtin {
@@ -26,6 +26,42 @@ const SCENES: &[Builtin] = &[
         description: "A closed cube that emits Le = 0.25 and reflects rho = 0.5 everywhere: the radiance is Le / (1 - rho) = 0.5 in every direction.",
         triangles: 12,
         make: furnace::furnace,
+    },
+    Builtin {
+        name: "spheres",
+        description: "Eight coloured spheres inside a large pale one, all exact: a few thousand photons are enough.",
+        triangles: 0,
+        make: spheres::spheres,
+    },
+    Builtin {
+        name: "texture-10",
+        description: "Two textured pyramids on chequers, ten triangles in all.",
+        triangles: 10,
+        make: texture::pyramids,
+    },
+    Builtin {
+        name: "texture-1210",
+        description: "Three patterned vases on a marble plinth.",
+        triangles: 1210,
+        make: texture::vases,
+    },
+    Builtin {
+        name: "texture-7590",
+        description: "A tea table with a chequered cloth, a marbled pot, cups, fruit and flowers.",
+        triangles: 7590,
+        make: texture::tea_table,
+    },
+    Builtin {
+        name: "water-lily-1426",
+        description: "A pond with two water lilies and carp over a bed of pebbles, with caustics through the waves, coarsely cut.",
+        triangles: 1426,
+        make: water_lily::coarse,
+    },
+    Builtin {
+        name: "water-lily-6146",
+        description: "The pond with water lilies, finely cut.",
+        triangles: 6146,
+        make: water_lily::fine,
     },
 ];
 

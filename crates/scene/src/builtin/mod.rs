@@ -3,9 +3,13 @@
 mod build;
 mod cornell;
 mod furnace;
+mod furniture;
 mod list;
 mod spectra;
+mod spheres;
+mod texture;
 mod two_spheres;
+mod water_lily;
 
 use crate::Scene;
 pub use list::list;

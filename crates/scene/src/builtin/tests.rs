@@ -2,7 +2,15 @@
 
 use super::*;
 use crate::{ColorInput, FloatInput, Geometry, Light, Material, Mesh, TextureKind};
-use photinus_geometry::Vec3;
+use photinus_geometry::{Aabb, Vec3};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// Every entry with its scene, built once for all tests.
+fn built() -> impl Iterator<Item = (&'static Builtin, &'static Scene)> {
+    static SCENES: OnceLock<Vec<Scene>> = OnceLock::new();
+    list().iter().zip(SCENES.get_or_init(|| list().iter().map(Builtin::build).collect()))
+}
 
 fn meshes(scene: &Scene) -> impl Iterator<Item = (&str, &Mesh)> {
     scene.shapes.iter().filter_map(|s| match &s.geometry {
@@ -25,8 +33,7 @@ fn names_are_unique_and_descriptions_are_one_sentence() {
 
 #[test]
 fn every_scene_has_its_triangles_a_name_and_light() {
-    for entry in list() {
-        let scene = entry.build();
+    for (entry, scene) in built() {
         assert_eq!(scene.triangle_count(), entry.triangles, "{}", entry.name);
         assert_eq!(scene.name, entry.name);
         assert!(scene.warnings.is_empty());
@@ -42,42 +49,124 @@ fn every_scene_has_its_triangles_a_name_and_light() {
 
 #[test]
 fn two_builds_are_equal() {
-    for entry in list() {
-        assert!(entry.build() == entry.build(), "{}", entry.name);
+    for (entry, scene) in built() {
+        assert!(entry.build() == *scene, "{}", entry.name);
     }
 }
 
 #[test]
 fn meshes_are_finite_indexed_in_range_and_not_degenerate() {
-    for entry in list() {
-        let scene = entry.build();
-        for (name, mesh) in meshes(&scene) {
-            let at = format!("{}: {name}", entry.name);
-            let n = mesh.positions.len();
-            assert!(n > 0 && !mesh.triangles.is_empty(), "{at}");
-            assert!(mesh.positions.iter().all(|p| p.is_finite()), "{at}");
-            assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < n), "{at}");
-            assert!(mesh.normals.is_empty() || mesh.normals.len() == n, "{at}");
-            assert!(mesh.uvs.is_empty() || mesh.uvs.len() == n, "{at}");
-            assert!(mesh.colors.is_empty(), "{at}");
-            assert!(mesh.normals.iter().all(|m| (m.length() - 1.0).abs() < 1e-5), "{at}: normal not unit");
-            assert!(mesh.uvs.iter().all(|m| m.is_finite()), "{at}");
-            let extent = {
-                let b = photinus_geometry::Aabb::around(mesh.positions.iter().copied());
-                (b.max - b.min).max_element()
-            };
-            for t in &mesh.triangles {
-                let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
-                let (e, f) = (b - a, c - a);
-                let cross = e.cross(f);
-                assert!(cross.length() > 2e-9 * extent * extent, "{at}: degenerate {a} {b} {c}");
-                let longest = e.length().max(f.length()).max((c - b).length());
-                assert!(cross.length() > 1e-3 * longest * longest, "{at}: sliver {a} {b} {c}");
-                for &v in t {
-                    if let Some(m) = mesh.normals.get(v as usize) {
-                        assert!(m.dot(cross.normalize()) > 0.0, "{at}: shading normal behind the face at {a} {b} {c}");
-                    }
-                }
+    for (entry, scene) in built() {
+        for (name, mesh) in meshes(scene) {
+            check_mesh(&format!("{}: {name}", entry.name), mesh);
+        }
+    }
+}
+
+/// Asserts what every mesh keeps: finite, complete, indexed in range, no degenerate triangle or sliver, unit shading
+/// normals on the side of their faces.
+pub(super) fn check_mesh(at: &str, mesh: &Mesh) {
+    let n = mesh.positions.len();
+    assert!(n > 0 && !mesh.triangles.is_empty(), "{at}");
+    assert!(mesh.positions.iter().all(|p| p.is_finite()), "{at}");
+    assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < n), "{at}");
+    assert!(mesh.normals.is_empty() || mesh.normals.len() == n, "{at}");
+    assert!(mesh.uvs.is_empty() || mesh.uvs.len() == n, "{at}");
+    assert!(mesh.uvs.iter().all(|uv| uv.is_finite()), "{at}");
+    assert!(mesh.colors.is_empty(), "{at}");
+    let bounds = Aabb::around(mesh.positions.iter().copied());
+    let extent = (bounds.max - bounds.min).max_element();
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+        let cross = (b - a).cross(c - a);
+        assert!(0.5 * cross.length() > 1e-9 * extent * extent, "{at}: degenerate {a} {b} {c}");
+        let longest = (b - a).length().max((c - a).length()).max((c - b).length());
+        assert!(cross.length() > 2e-3 * longest * longest, "{at}: sliver {a} {b} {c}");
+        for &v in t {
+            if let Some(m) = mesh.normals.get(v as usize) {
+                assert!((m.length() - 1.0).abs() < 1e-5, "{at}: normal {m} is not unit");
+                assert!(m.dot(cross.normalize()) > 0.0, "{at}: shading normal {m} behind the face {a} {b} {c}");
+            }
+        }
+    }
+}
+
+/// The signed volume of every connected piece of a mesh that is closed; none for a piece with an open edge.
+///
+/// Vertices at exactly the same place are one. Two faces at an edge must run along it in opposite directions.
+pub(super) fn closed_volume(at: &str, mesh: &Mesh) -> Vec<Option<f32>> {
+    let key = |p: Vec3| p.to_array().map(|x| (x + 0.0).to_bits());
+    let mut ids = BTreeMap::new();
+    let welded: Vec<usize> = mesh
+        .positions
+        .iter()
+        .map(|&p| {
+            let next = ids.len();
+            *ids.entry(key(p)).or_insert(next)
+        })
+        .collect();
+    let faces: Vec<[usize; 3]> = mesh.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
+    let mut edges: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for f in &faces {
+        for k in 0..3 {
+            *edges.entry((f[k], f[(k + 1) % 3])).or_insert(0) += 1;
+        }
+    }
+    let mut piece: Vec<usize> = (0..ids.len()).collect();
+    fn root(piece: &mut [usize], mut i: usize) -> usize {
+        while piece[i] != i {
+            piece[i] = piece[piece[i]];
+            i = piece[i];
+        }
+        i
+    }
+    for f in &faces {
+        for v in [f[1], f[2]] {
+            let (a, b) = (root(&mut piece, f[0]), root(&mut piece, v));
+            piece[a] = b;
+        }
+    }
+    let mut volumes: BTreeMap<usize, Option<f64>> = BTreeMap::new();
+    let wide = |p: Vec3| p.to_array().map(f64::from);
+    let origin = wide(mesh.positions[0]);
+    for (f, t) in faces.iter().zip(&mesh.triangles) {
+        let volume = volumes.entry(root(&mut piece, f[0])).or_insert(Some(0.0));
+        for k in 0..3 {
+            let (e, back) = ((f[k], f[(k + 1) % 3]), (f[(k + 1) % 3], f[k]));
+            let opposite = edges.get(&back).copied().unwrap_or(0);
+            assert!(edges[&e] <= 1 || opposite == edges[&e], "{at}: faces disagree about the outside");
+            if opposite != edges[&e] {
+                *volume = None;
+            }
+        }
+        let [a, b, c] = t.map(|v| {
+            let p = wide(mesh.positions[v as usize]);
+            [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]]
+        });
+        let cross = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
+        if let Some(v) = volume {
+            *v += (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6.0;
+        }
+    }
+    volumes.into_values().map(|v| v.map(|v| v as f32)).collect()
+}
+
+/// Closed bodies face outwards, but for a room that holds the camera, which faces inwards; what refracts is closed.
+#[test]
+fn closed_parts_face_outwards_and_glass_is_closed() {
+    for (entry, scene) in built() {
+        for shape in &scene.shapes {
+            let Geometry::Mesh(mesh) = &shape.geometry else { continue };
+            let at = format!("{}: {}", entry.name, shape.name);
+            let volumes = closed_volume(&at, mesh);
+            let b = Aabb::around(mesh.positions.iter().copied());
+            let inside = scene.camera.origin.cmpgt(b.min).all() && scene.camera.origin.cmplt(b.max).all();
+            for v in volumes.iter().flatten() {
+                assert!(if inside && volumes.len() == 1 { *v < 0.0 } else { *v > 0.0 }, "{at}: volume {v}");
+            }
+            let glass = matches!(scene.materials[shape.material.0 as usize].material, Material::Dielectric { .. });
+            if glass && shape.name != "water" {
+                assert!(volumes.iter().all(Option::is_some), "{at}: open glass");
             }
         }
     }
@@ -85,8 +174,7 @@ fn meshes_are_finite_indexed_in_range_and_not_degenerate() {
 
 #[test]
 fn materials_and_textures_are_in_range_and_nested_ones_come_first() {
-    for entry in list() {
-        let scene = entry.build();
+    for (entry, scene) in built() {
         for shape in &scene.shapes {
             assert!((shape.material.0 as usize) < scene.materials.len(), "{}: {}", entry.name, shape.name);
         }
@@ -136,8 +224,7 @@ fn textures_of(material: &Material) -> Vec<crate::TextureId> {
 /// A textured shape carries texture coordinates, and no material that reads a bitmap meets a mesh without them.
 #[test]
 fn textured_meshes_have_texture_coordinates() {
-    for entry in list() {
-        let scene = entry.build();
+    for (entry, scene) in built() {
         let textured = |id: crate::MaterialId| {
             let mut open = vec![id];
             while let Some(m) = open.pop() {

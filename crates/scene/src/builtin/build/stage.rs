@@ -28,6 +28,11 @@ impl Stage {
         self.material(name, Material::TwoSided { front: inner, back: inner })
     }
 
+    /// The material of this name.
+    pub fn find_material(&self, name: &str) -> Option<MaterialId> {
+        self.materials.iter().position(|m| m.name == name).map(|i| MaterialId(i as u32))
+    }
+
     /// Adds a Lambertian material of this albedo, the same from both sides.
     pub fn diffuse(&mut self, name: &str, albedo: [f32; 3]) -> MaterialId {
         self.two_sided(name, Material::Diffuse { reflectance: rgb(albedo) })
@@ -55,13 +60,19 @@ impl Stage {
     }
 
     /// Adds a mesh.
-    pub fn mesh(&mut self, name: &str, material: MaterialId, mesh: Mesh) {
-        self.shapes.push(Shape { name: name.to_owned(), geometry: Geometry::Mesh(mesh), material, emission: None });
+    pub fn mesh(&mut self, name: &str, material: MaterialId, mesh: impl Into<Mesh>) {
+        let geometry = Geometry::Mesh(mesh.into());
+        self.shapes.push(Shape { name: name.to_owned(), geometry, material, emission: None });
     }
 
     /// Adds a mesh that gives off this radiance (W/m²/sr, RGB) on the side of its normals.
-    pub fn lamp(&mut self, name: &str, material: MaterialId, mesh: Mesh, radiance: [f32; 3]) {
+    pub fn lamp(&mut self, name: &str, material: MaterialId, mesh: impl Into<Mesh>, radiance: [f32; 3]) {
         self.mesh(name, material, mesh);
+        self.light_last(radiance);
+    }
+
+    /// Lets the last shape give off this radiance (W/m²/sr, RGB) on the side of its normals.
+    pub fn light_last(&mut self, radiance: [f32; 3]) {
         if let Some(shape) = self.shapes.last_mut() {
             shape.emission = Some(rgb(radiance));
         }
@@ -69,11 +80,20 @@ impl Stage {
 
     /// Adds an exact sphere.
     pub fn sphere(&mut self, name: &str, material: MaterialId, center: [f32; 3], radius: f32) {
+        self.add_sphere(name, material, center, radius, false);
+    }
+
+    /// Adds an exact sphere that is seen from inside.
+    pub fn hollow_sphere(&mut self, name: &str, material: MaterialId, center: [f32; 3], radius: f32) {
+        self.add_sphere(name, material, center, radius, true);
+    }
+
+    fn add_sphere(&mut self, name: &str, material: MaterialId, center: [f32; 3], radius: f32, flip_normals: bool) {
         self.shapes.push(Shape {
             name: name.to_owned(),
             geometry: Geometry::Sphere {
                 sphere: Sphere { center: Vec3::from(center), radius },
-                flip_normals: false,
+                flip_normals,
                 axes: [Vec3::X, Vec3::Y, Vec3::Z],
             },
             material,
@@ -92,9 +112,13 @@ impl Stage {
         TextureId(self.textures.len() as u32 - 1)
     }
 
-    /// Triangles so far.
-    pub fn triangle_count(&self) -> usize {
+    fn triangle_count(&self) -> usize {
         self.shapes.iter().map(Shape::triangle_count).sum()
+    }
+
+    /// Triangles that are missing to `target`, 0 when there are as many or more.
+    pub fn missing_to(&self, target: usize) -> usize {
+        target.saturating_sub(self.triangle_count())
     }
 
     /// The finished scene; paths have at most `max_depth` segments as Mitsuba counts them.

@@ -1,0 +1,58 @@
+//! Pictures drawn by code: functions from the unit square to colour, sampled once.
+//!
+//! Colours in here are sRGB-encoded, 0 to 1, as one picks them from a chart; v runs upwards.
+
+mod cloth;
+mod noise;
+mod paintings;
+mod plants;
+mod stone;
+mod wood;
+mod world;
+
+pub use cloth::{rug, stripes, weave};
+pub use paintings::{blocks, circles, hills};
+pub use plants::{pad, petal, scales};
+pub use stone::{brick, checker, marble, pebbles};
+pub use wood::{grain, planks};
+pub use world::world;
+
+use crate::{Bitmap, BitmapPixels};
+use photinus_geometry::Vec3;
+use std::sync::Arc;
+
+/// Samples a picture at the middles of its pixels.
+fn draw(width: u32, height: u32, color: impl Fn(f32, f32) -> Vec3) -> Arc<Bitmap> {
+    let mut data = Vec::with_capacity((width * height) as usize);
+    for row in 0..height {
+        let v = 1.0 - (row as f32 + 0.5) / height as f32;
+        for column in 0..width {
+            let c = color((column as f32 + 0.5) / width as f32, v);
+            let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+            data.push([byte(c.x), byte(c.y), byte(c.z), 255]);
+        }
+    }
+    Arc::new(Bitmap { width, height, pixels: BitmapPixels::Rgba8 { data, srgb: true } })
+}
+
+/// A colour by its chart number, 0xRRGGBB.
+pub fn hex(number: u32) -> Vec3 {
+    let channel = |shift: u32| (number >> shift & 255) as f32 / 255.0;
+    Vec3::new(channel(16), channel(8), channel(0))
+}
+
+/// From `a` to `b` as `t` goes from 0 to 1.
+fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
+    a * (1.0 - t) + b * t
+}
+
+/// 0 below `low`, 1 above `high`, smooth between.
+fn step_between(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The part of `x` after its whole number.
+fn fraction(x: f32) -> f32 {
+    x - x.floor()
+}

@@ -1,0 +1,71 @@
+//! Paintings for walls, each in a manner of its own.
+
+use super::{draw, hex, mix, noise::Noise, step_between};
+use crate::Bitmap;
+use std::sync::Arc;
+
+/// Ranges of hills under an evening sky, a low sun between them.
+pub fn hills(number: u32) -> Arc<Bitmap> {
+    let noise = Noise::new(number);
+    let ranges = [0x8C8FB0, 0x6F7FA3, 0x50708A, 0x3C5F66, 0x2E4B40, 0x22352C].map(hex);
+    draw(512, 384, |u, v| {
+        let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, v + 0.08 * noise.clouds(u, v, [3, 12], 4)));
+        let (dx, dy) = ((u - 0.64) * 1.33, v - 0.6);
+        let sun = (dx * dx + dy * dy).sqrt();
+        let mut c = mix(hex(0xFFF1C9), sky, step_between(0.055, 0.065, sun));
+        c = mix(hex(0xFFD898), c, step_between(0.0, 0.4, sun).max(0.35));
+        for (k, &range) in ranges.iter().enumerate() {
+            let k = k as i64;
+            let crest = 0.60 - 0.105 * k as f32
+                + 0.22 * (noise.clouds(u + 0.13 * k as f32, 0.17 * k as f32, [3 + k, 3], 5) - 0.5);
+            if v < crest {
+                c = mix(range * 1.12, range * 0.85, step_between(0.0, 0.16, crest - v));
+            }
+        }
+        c * (0.94 + 0.12 * noise.clouds(u, v, [64, 64], 1))
+    })
+}
+
+/// Black bars, white and primary fields.
+pub fn blocks(number: u32) -> Arc<Bitmap> {
+    let noise = Noise::new(number);
+    let (columns, rows) = ([0.0, 0.22, 0.3, 0.72, 0.86, 1.0], [0.0, 0.16, 0.44, 0.52, 0.82, 1.0]);
+    let colors = [
+        [0x1F4E8C, 0xEDE8DA, 0xEDE8DA, 0xE8C23A, 0xEDE8DA],
+        [0xEDE8DA, 0xEDE8DA, 0xEDE8DA, 0xEDE8DA, 0xB5322B],
+        [0xEDE8DA, 0xE8C23A, 0xEDE8DA, 0xEDE8DA, 0xEDE8DA],
+        [0xEDE8DA, 0xEDE8DA, 0xB5322B, 0xEDE8DA, 0x1F4E8C],
+        [0xE8C23A, 0xEDE8DA, 0xEDE8DA, 0x22221F, 0xEDE8DA],
+    ];
+    draw(512, 384, |u, v| {
+        let find = |edges: &[f32; 6], t: f32| edges.windows(2).position(|w| t < w[1]).unwrap_or(4);
+        let (i, j) = (find(&columns, u), find(&rows, v));
+        let near = |edges: &[f32; 6], t: f32| edges[1..5].iter().map(|e| (e - t).abs()).fold(1.0, f32::min);
+        let line = (near(&columns, u) * 1.33).min(near(&rows, v));
+        let c = mix(hex(0x1B1B1B), hex(colors[j][i]), step_between(0.009, 0.013, line));
+        c * (0.96 + 0.07 * noise.clouds(u, v, [48, 48], 2))
+    })
+}
+
+/// Rings and discs in warm and cool colours on cream.
+pub fn circles(number: u32) -> Arc<Bitmap> {
+    let noise = Noise::new(number);
+    let inks = [0xC8452F, 0x2F5D7C, 0xE3A63B, 0x4F7F64, 0x6D3F5B, 0xD97F56].map(hex);
+    draw(384, 512, |u, v| {
+        let mut c = mix(hex(0xEFE3CB), hex(0xE3CFAE), noise.clouds(u, v, [3, 3], 4));
+        for k in 0..14i64 {
+            let random = |salt: i64| noise.cell(k + 3, salt);
+            let (dx, dy) = (u - 0.1 - 0.8 * random(5), (v - 0.08 - 0.84 * random(9)) * 1.33);
+            let radius = 0.04 + 0.19 * random(13) * random(14);
+            let d = (dx * dx + dy * dy).sqrt();
+            let ink = inks[k as usize % inks.len()];
+            let disc = 1.0 - step_between(radius - 0.003, radius + 0.003, d);
+            let ring = disc * step_between(0.72 * radius - 0.003, 0.72 * radius + 0.003, d);
+            let cover = if k % 3 == 0 { ring } else { disc };
+            c = mix(c, c * 0.25 + ink * 0.75, cover);
+            let core = 1.0 - step_between(0.3 * radius - 0.003, 0.3 * radius + 0.003, d);
+            c = mix(c, inks[(k as usize + 2) % inks.len()], core);
+        }
+        c * (0.95 + 0.1 * noise.clouds(u, v, [64, 64], 1))
+    })
+}

@@ -1,1 +1,0 @@
-//! OBJ material libraries.

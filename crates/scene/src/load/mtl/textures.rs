@@ -1,0 +1,117 @@
+//! Pictures of a material library as textures of the scene.
+
+use super::super::bitmap::{BitmapEncoding, grey_pixel, load_bitmap, tinted};
+use super::super::{Context, Draft, LoadError, Place};
+use super::Library;
+use super::parse::MapRef;
+use crate::{Bitmap, ColorInput, FloatInput, Texture, TextureFilter, TextureId, TextureKind, WrapMode};
+use photinus_geometry::{Affine3A, Vec3};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Where pictures are looked for, and where textures go.
+pub(super) struct Textures<'a, 'c> {
+    pub(super) library: &'a Library,
+    pub(super) draft: &'a mut Draft,
+    pub(super) context: &'a mut Context<'c>,
+}
+
+impl Textures<'_, '_> {
+    /// A colour times `tint`. A missing picture is a warning and either mid-grey (`show_missing`) or none.
+    pub(super) fn color(&mut self, map: &MapRef, tint: Vec3, show_missing: bool) -> Option<ColorInput> {
+        let tint = tint * map.gain;
+        if map.base != 0.0 {
+            self.warn(map, "the base value of -mm is not supported: ignored");
+        }
+        let bitmap = match self.bitmap(map, BitmapEncoding::Auto) {
+            Some(bitmap) => tinted(&bitmap, tint),
+            None if show_missing => grey_pixel(),
+            None => return None,
+        };
+        Some(ColorInput::Texture(self.add(map, bitmap, map.alpha)))
+    }
+
+    /// A number: the luminance of a picture of linear values.
+    pub(super) fn number(&mut self, map: &MapRef) -> Option<FloatInput> {
+        self.data(map).map(FloatInput::Texture)
+    }
+
+    /// Linear values: heights, normals, roughness.
+    pub(super) fn data(&mut self, map: &MapRef) -> Option<TextureId> {
+        let bitmap = self.bitmap(map, BitmapEncoding::Raw)?;
+        Some(self.add(map, bitmap, map.alpha))
+    }
+
+    /// Opacity: the alpha channel of a picture that has one, else its luminance.
+    pub(super) fn opacity(&mut self, map: &MapRef) -> Option<FloatInput> {
+        let bitmap = self.bitmap(map, BitmapEncoding::Raw)?;
+        let alpha = map.alpha || has_holes(&bitmap);
+        Some(FloatInput::Texture(self.add(map, bitmap, alpha)))
+    }
+
+    fn add(&mut self, map: &MapRef, bitmap: Arc<Bitmap>, alpha: bool) -> TextureId {
+        let wrap = if map.clamp { WrapMode::Clamp } else { WrapMode::Repeat };
+        let ([su, sv], [ou, ov]) = (map.scale, map.offset);
+        let to_uv = Affine3A::from_translation(Vec3::new(ou, ov, 0.0)) * Affine3A::from_scale(Vec3::new(su, sv, 1.0));
+        let kind = TextureKind::Bitmap { bitmap, filter: TextureFilter::Bilinear, wrap, alpha };
+        self.draft.add_texture(Texture { name: map.file.clone(), kind, to_uv })
+    }
+
+    fn warn(&mut self, map: &MapRef, message: &str) {
+        let place = Place::new(&self.library.path, map.line);
+        self.context.warn(&place, format!("{}: {message}", map.statement));
+    }
+
+    /// The picture, or none and a warning.
+    fn bitmap(&mut self, map: &MapRef, encoding: BitmapEncoding) -> Option<Arc<Bitmap>> {
+        let place = Place::new(&self.library.path, map.line);
+        let found = self.find(&place, &map.file);
+        match found.and_then(|path| load_bitmap(&place, &path, encoding, self.context)) {
+            Ok(bitmap) => Some(bitmap),
+            Err(error) => {
+                self.context.warn(&place, missing_message(&map.statement, &error));
+                None
+            }
+        }
+    }
+
+    /// The file as named; else without what follows ` #`; else under its bare name, as many files name a folder of the
+    /// machine that wrote them.
+    fn find(&mut self, place: &Place, file: &str) -> Result<PathBuf, LoadError> {
+        let first = self.context.resolve(place, file, &self.library.folders);
+        if first.is_ok() {
+            return first;
+        }
+        let uncommented = file.split(" #").next().unwrap_or(file).trim_end();
+        let bare = uncommented.rsplit(['/', '\\']).next().unwrap_or(uncommented);
+        for name in [uncommented, bare] {
+            if name != file
+                && !name.is_empty()
+                && let Ok(path) = self.context.resolve(place, name, &self.library.folders)
+            {
+                return Ok(path);
+            }
+        }
+        first
+    }
+}
+
+/// The error without its place, which the warning has already.
+fn missing_message(statement: &str, error: &LoadError) -> String {
+    match error {
+        LoadError::Io { path, source, .. } => format!("{statement}: cannot read {}: {source}", path.display()),
+        LoadError::Invalid { message, .. } => format!("{statement}: {message}"),
+        LoadError::Outside { path, .. } => {
+            format!("{statement}: {} lies outside the scene's folder: not read (--allow-outside)", path.display())
+        }
+        other => format!("{statement}: {other}"),
+    }
+}
+
+/// Whether some pixel is not opaque.
+fn has_holes(bitmap: &Bitmap) -> bool {
+    match &bitmap.pixels {
+        crate::BitmapPixels::Rgba8 { data, .. } => data.iter().any(|p| p[3] != 255),
+        crate::BitmapPixels::RgbaF32(data) => data.iter().any(|p| p[3] != 1.0),
+    }
+}
