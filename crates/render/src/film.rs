@@ -203,9 +203,10 @@ impl Film {
         mean
     }
 
-    /// Most buffers that are held at once by the end of pass number `passes`, the one in flight included.
-    pub fn buffers(passes: u32) -> u64 {
-        u64::from(32 - passes.max(1).leading_zeros()) + 1
+    /// Bytes held at once by the end of pass number `passes` for `values` numbers, the pass in flight included.
+    pub fn predicted_bytes(values: usize, passes: u32) -> usize {
+        let levels = 32 - passes.max(1).leading_zeros() as usize;
+        values * 4 * (levels + 1)
     }
 }
 

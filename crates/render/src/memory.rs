@@ -21,7 +21,8 @@ impl RenderMemory {
     /// For `values` numbers on the film, `passes` passes and `stored` photons a pass.
     pub(crate) fn predict(values: u64, passes: u32, stored: u64, lights: u64) -> Self {
         // The tiles of a pass and the picture that is written out are one buffer each.
-        Self { film: values * 4 * (Film::buffers(passes) + 2), photons: stored * PHOTON_BUILD_BYTES, lights }
+        let film = Film::predicted_bytes(values as usize, passes) as u64 + values * 4 * 2;
+        Self { film, photons: stored * PHOTON_BUILD_BYTES, lights }
     }
 
     /// All owners together.
