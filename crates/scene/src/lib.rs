@@ -8,6 +8,8 @@ pub mod load;
 pub mod model;
 pub mod tessellate;
 pub mod shapes;
+pub mod write;
 
 pub use load::{LoadError, LoadOptions, load};
 pub use model::*;
+pub use write::{WriteError, write_mitsuba};

@@ -27,6 +27,12 @@ pub fn write_png8(path: impl AsRef<Path>, width: usize, height: usize, samples: 
     write_atomic(path, &encode_rgb8(width, height, samples.as_flattened(), path)?)
 }
 
+/// As [`write_png8`], with an alpha channel.
+pub fn write_png8_rgba(path: impl AsRef<Path>, width: usize, height: usize, samples: &[[u8; 4]]) -> Result<()> {
+    let path = path.as_ref();
+    write_atomic(path, &encode8(width, height, samples.as_flattened(), ExtendedColorType::Rgba8, path)?)
+}
+
 fn encode(image: &Image, tonemap: Tonemap, exposure_ev: f32, path: &Path) -> Result<Vec<u8>> {
     let scale = libm::exp2f(exposure_ev);
     let samples: Vec<[u8; 3]> = image
@@ -44,18 +50,22 @@ fn quantise(encoded: f32) -> u8 {
 }
 
 fn encode_rgb8(width: usize, height: usize, samples: &[u8], path: &Path) -> Result<Vec<u8>> {
+    encode8(width, height, samples, ExtendedColorType::Rgb8, path)
+}
+
+fn encode8(width: usize, height: usize, samples: &[u8], color: ExtendedColorType, path: &Path) -> Result<Vec<u8>> {
     let mismatch = |what: String| {
         ImageError::new(ImageErrorKind::Mismatch, path, what, "this is an error of the program that writes the image")
     };
     let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
         return Err(mismatch(format!("{width} x {height} pixels are too many for PNG")));
     };
-    if samples.len() != width * height * 3 || samples.is_empty() {
+    if samples.len() != width * height * usize::from(color.channel_count()) || samples.is_empty() {
         return Err(mismatch(format!("{} samples do not make {width} x {height} pixels", samples.len())));
     }
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
-        .write_image(samples, columns, rows, ExtendedColorType::Rgb8)
+        .write_image(samples, columns, rows, color)
         .map_err(|error| mismatch(error.to_string()))?;
     Ok(bytes)
 }

@@ -5,6 +5,7 @@ mod cameras;
 mod common;
 mod emitters;
 mod nasty;
+mod roundtrip;
 mod scenes;
 mod shapes;
 mod textures;

@@ -32,12 +32,9 @@ impl<'t> Importer<'t, '_, '_> {
                     Some(direction) => direction.as_dvec3(),
                     None => self.map(&props)?.transform_vector3(DVec3::Z),
                 };
-                let Some(unit) = direction.try_normalize() else {
+                let Some(direction) = unit(direction) else {
                     return Err(props.error("the direction of a directional light must not be zero"));
                 };
-                // What is unit length already keeps its bits.
-                let given = direction.as_vec3();
-                let direction = if (given.length_squared() - 1.0).abs() < 1e-6 { given } else { unit.as_vec3() };
                 let irradiance = self.constant_color(&props, "irradiance", Role::Emission, 1.0)?;
                 Light::Directional { direction, irradiance }
             }
@@ -69,23 +66,22 @@ impl<'t> Importer<'t, '_, '_> {
     }
 
     fn spot(&mut self, props: &Props<'t>) -> Result<Light, LoadError> {
-        let transform = props.transform("to_world", self.context)?;
-        let map = transform.map_or(DAffine3::IDENTITY, |t| t.matrix);
-        let Some(unit) = map.transform_vector3(DVec3::Z).try_normalize() else {
+        let map = self.map(props)?;
+        let Some(direction) = unit(map.transform_vector3(DVec3::Z)) else {
             return Err(props.error("the transform leaves a spot light without a direction"));
         };
-        let cutoff = props.float_in("cutoff_angle", 0.0..=180.0)?.unwrap_or(20.0);
-        let beam = props.float_in("beam_width", 0.0..=180.0)?.unwrap_or(cutoff * 3.0 / 4.0);
+        let cutoff = props.angle("cutoff_angle", 20.0)?;
+        let beam = props.angle("beam_width", cutoff * 3.0 / 4.0)?.min(cutoff);
         if props.has("texture") {
             props.ignore(&["texture"]);
             self.context.warn(&props.place_of("texture"), "a spot light projects no texture: ignored");
         }
         Ok(Light::Spot {
             position: map.translation.as_vec3(),
-            direction: unit.as_vec3(),
+            direction,
             intensity: self.constant_color(props, "intensity", Role::Emission, 1.0)?,
-            cutoff_angle: cutoff.to_radians(),
-            beam_width: beam.min(cutoff).to_radians(),
+            cutoff_angle: cutoff.to_radians() as f32,
+            beam_width: beam.to_radians() as f32,
         })
     }
 
@@ -95,18 +91,26 @@ impl<'t> Importer<'t, '_, '_> {
         if scale < 0.0 {
             return Err(props.error("the scale of an environment is negative"));
         }
-        let bitmap = self.bitmap(props, BitmapEncoding::Auto)?.unwrap_or_else(|| {
+        let raw = props.boolean("raw")?.unwrap_or(false);
+        let encoding = if raw { BitmapEncoding::Raw } else { BitmapEncoding::Auto };
+        let bitmap = self.bitmap(props, encoding)?.unwrap_or_else(|| {
             let pixels = BitmapPixels::RgbaF32(vec![[0.5, 0.5, 0.5, 1.0]]);
             Arc::new(Bitmap { width: 1, height: 1, pixels })
         });
         let m = map.matrix3;
         let to_world = Affine3A::from_mat3_translation(
             Mat3::from_cols(m.x_axis.as_vec3(), m.y_axis.as_vec3(), m.z_axis.as_vec3()),
-            Vec3::ZERO,
+            map.translation.as_vec3(),
         );
         if to_world.matrix3.determinant() == 0.0 {
             return Err(props.error("the transform of an environment is flat"));
         }
         Ok(EnvironmentLight::Image { bitmap, scale, to_world })
     }
+}
+
+/// The direction of a vector, none for zero; what is of unit length to single precision keeps its bits.
+fn unit(v: DVec3) -> Option<Vec3> {
+    let given = v.as_vec3();
+    if (given.length_squared() - 1.0).abs() < 1e-6 { Some(given) } else { Some(v.try_normalize()?.as_vec3()) }
 }

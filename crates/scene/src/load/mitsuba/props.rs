@@ -168,6 +168,15 @@ impl<'t> Props<'t> {
         Err(LoadError::invalid(self.place_of(name), message))
     }
 
+    /// An angle from 0 to 180 degrees, in double precision.
+    pub fn angle(&self, name: &str, default: f64) -> Result<f64, LoadError> {
+        if self.float_in(name, 0.0..=180.0)?.is_none() {
+            return Ok(default);
+        }
+        let text = self.value(name, &["float", "integer"], "a number")?.map_or("", |v| v.1);
+        Ok(super::value::parse_f64(text).unwrap_or(default))
+    }
+
     /// A whole number.
     pub fn integer(&self, name: &str) -> Result<Option<i64>, LoadError> {
         let what = "a whole number";

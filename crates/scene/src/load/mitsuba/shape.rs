@@ -89,18 +89,12 @@ impl<'t> Importer<'t, '_, '_> {
                     Geometry::Mesh(mesh)
                 }
                 Geometry::Sphere { sphere, flip_normals, axes } => {
-                    let local = DAffine3 {
-                        matrix3: glam::DMat3::from_cols(
-                            axes[0].as_dvec3() * f64::from(sphere.radius),
-                            axes[1].as_dvec3() * f64::from(sphere.radius),
-                            axes[2].as_dvec3() * f64::from(sphere.radius),
-                        ),
-                        translation: sphere.center.as_dvec3(),
-                    };
+                    let [x, y, z] = axes.map(|a| a.as_dvec3());
+                    let matrix3 = glam::DMat3::from_cols(x, y, z);
+                    let map = map * DAffine3 { matrix3, translation: sphere.center.as_dvec3() };
                     // Unlike the sphere's own transform, one that mirrors the instance leaves its outside outside.
-                    let map = map * local;
                     let flip = flip_normals != (map.matrix3.determinant() < 0.0);
-                    self.sphere(props, map, flip)?
+                    self.sphere(props, map, sphere.radius, flip)?
                 }
             };
             self.check_finite(props, &shape.geometry)?;
@@ -210,10 +204,8 @@ impl<'t> Importer<'t, '_, '_> {
             }
             _ => {
                 let center = props.vector("center")?.unwrap_or(Vec3::ZERO);
-                let radius = f64::from(self.radius(props)?);
-                let local = DAffine3::from_scale(DVec3::splat(radius));
-                let local = DAffine3::from_translation(center.as_dvec3()) * local;
-                return self.sphere(props, *map * local, flip);
+                let moved = *map * DAffine3::from_translation(center.as_dvec3());
+                return self.sphere(props, moved, self.radius(props)?, flip);
             }
         };
         place_mesh(&mut mesh, map, flip);
@@ -227,30 +219,32 @@ impl<'t> Importer<'t, '_, '_> {
         }
     }
 
-    /// The image of the unit sphere: a sphere where the map keeps shapes, triangles otherwise. As in Mitsuba, a map
-    /// that mirrors turns the normals of a sphere.
-    fn sphere(&mut self, props: &Props<'t>, map: DAffine3, flip: bool) -> Result<Geometry, LoadError> {
+    /// The image of the sphere of this radius around the origin: a sphere where the map keeps shapes, triangles
+    /// otherwise. As in Mitsuba, a map that mirrors turns the normals of a sphere.
+    fn sphere(&mut self, props: &Props<'t>, map: DAffine3, radius: f32, flip: bool) -> Result<Geometry, LoadError> {
         let m = &map.matrix3;
-        let lengths = [m.x_axis.length(), m.y_axis.length(), m.z_axis.length()];
-        let radius = lengths[0];
-        if !(radius as f32 > 0.0 && (radius as f32).is_finite() && map.translation.as_vec3().is_finite()) {
+        let axes = [m.x_axis, m.y_axis, m.z_axis];
+        let lengths = axes.map(DVec3::length);
+        let factor = lengths[0];
+        let moved = (f64::from(radius) * factor) as f32;
+        if !(moved > 0.0 && moved.is_finite() && map.translation.as_vec3().is_finite()) {
             return Err(props.error("the transform leaves a sphere without a size or a place"));
         }
-        let mirrors = m.determinant() < 0.0;
+        let flip_normals = flip != (m.determinant() < 0.0);
         let skew = [m.x_axis.dot(m.y_axis), m.y_axis.dot(m.z_axis), m.z_axis.dot(m.x_axis)];
-        let even = lengths.iter().all(|l| (l / radius - 1.0).abs() < 1e-4)
-            && skew.iter().all(|s| s.abs() < 1e-4 * radius * radius);
+        let even = lengths.iter().all(|l| (l / factor - 1.0).abs() < 1e-4)
+            && skew.iter().all(|s| s.abs() < 1e-4 * factor * factor);
         if even {
-            return Ok(Geometry::Sphere {
-                sphere: Sphere { center: map.translation.as_vec3(), radius: radius as f32 },
-                flip_normals: flip != mirrors,
-                axes: [m.x_axis, m.y_axis, m.z_axis].map(|a| a.normalize().as_vec3()),
-            });
+            // What only turns keeps its bits.
+            let turns = lengths.iter().all(|l| (l - 1.0).abs() < 1e-6);
+            let (radius, axes) = if turns { (radius, axes) } else { (moved, axes.map(DVec3::normalize)) };
+            let sphere = Sphere { center: map.translation.as_vec3(), radius };
+            return Ok(Geometry::Sphere { sphere, flip_normals, axes: axes.map(|a| a.as_vec3()) });
         }
         self.context.warn(&props.place(), "the transform makes a sphere an ellipsoid: it becomes triangles");
-        let unit = Sphere { center: Vec3::ZERO, radius: 1.0 };
-        let mut mesh: Mesh = sphere_mesh(unit, [Vec3::X, Vec3::Y, Vec3::Z], false, ELLIPSOID_SEGMENTS);
-        place_mesh(&mut mesh, &map, flip != mirrors);
+        let local = Sphere { center: Vec3::ZERO, radius };
+        let mut mesh: Mesh = sphere_mesh(local, [Vec3::X, Vec3::Y, Vec3::Z], false, ELLIPSOID_SEGMENTS);
+        place_mesh(&mut mesh, &map, flip_normals);
         Ok(Geometry::Mesh(mesh))
     }
 

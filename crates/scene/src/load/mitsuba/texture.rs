@@ -96,6 +96,7 @@ impl<'t> Importer<'t, '_, '_> {
     /// The texture of the element `id`; none where it cannot be read, which was warned about. `raw`: read as linear
     /// data unless the file says otherwise.
     pub(super) fn texture(&mut self, id: NodeId, raw: bool) -> Result<Option<TextureId>, LoadError> {
+        let raw = raw && self.raw_is_open(id, 0);
         match self.textures.get(&(id, raw)) {
             Some(State::Done(texture)) => return Ok(*texture),
             Some(State::Building) => return Err(self.circle(id)),
@@ -108,6 +109,16 @@ impl<'t> Importer<'t, '_, '_> {
         self.textures.insert((id, raw), State::Done(texture));
         self.leave();
         Ok(texture)
+    }
+
+    /// Whether it is left open how the picture inside a texture is meant.
+    fn raw_is_open(&self, id: NodeId, depth: u32) -> bool {
+        let Ok(props) = self.props(id) else { return false };
+        match props.kind() {
+            "bitmap" => !props.has("raw") && !props.has("gamma"),
+            "scale" if depth < 16 => props.objects("texture").iter().any(|t| self.raw_is_open(t.1, depth + 1)),
+            _ => false,
+        }
     }
 
     fn build_texture(&mut self, id: NodeId, raw: bool) -> Result<Option<Texture>, LoadError> {
