@@ -6,8 +6,8 @@
 pub mod builtin;
 pub mod load;
 pub mod model;
-pub mod tessellate;
 pub mod shapes;
+pub mod tessellate;
 pub mod write;
 
 pub use load::{LoadError, LoadOptions, load};

@@ -35,11 +35,14 @@ pub fn creased_normals(mesh: &mut Mesh, max_angle_degrees: f32) {
     split_by_corner(mesh, &corners);
 }
 
-/// Scales the normals to unit length, gives those without a direction the mean of their faces' and returns how many
-/// those were.
+/// Scales the normals to unit length (those that have it keep their bits), gives those without a direction the mean of
+/// their faces' and returns how many those were.
 pub(super) fn repair_normals(mesh: &mut Mesh) -> usize {
     let mut bad = 0;
     for n in &mut mesh.normals {
+        if (n.length_squared() - 1.0).abs() < 1e-6 {
+            continue;
+        }
         let given = n.to_array().map(f64::from);
         *n = if n.is_finite() { unit(given).unwrap_or(Vec3::ZERO) } else { Vec3::ZERO };
         bad += usize::from(*n == Vec3::ZERO);

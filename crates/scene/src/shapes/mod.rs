@@ -3,7 +3,6 @@
 //! Each shape is in its own space as Mitsuba 3 defines it, with texture coordinates whose v runs up (v = 0 is a
 //! picture's bottom row).
 
-mod crease;
 mod cube;
 mod cylinder;
 mod disk;
@@ -11,7 +10,6 @@ mod place;
 mod rectangle;
 mod sphere;
 
-pub use crease::crease_normals;
 pub use cube::cube;
 pub use cylinder::cylinder;
 pub use disk::disk;

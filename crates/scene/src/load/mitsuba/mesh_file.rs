@@ -3,13 +3,13 @@
 use super::Importer;
 use super::props::Props;
 use crate::Mesh;
-use crate::load::normals::smooth_normals;
+use crate::load::normals::{creased_normals, smooth_normals};
 use crate::load::obj::{ObjPart, read_obj};
 use crate::load::ply::read_ply;
 use crate::load::serialized::read_serialized;
 use crate::load::stl::read_stl;
 use crate::load::{LoadError, Place};
-use crate::shapes::{crease_normals, place_mesh};
+use crate::shapes::place_mesh;
 use glam::DAffine3;
 use std::path::PathBuf;
 
@@ -88,7 +88,7 @@ impl<'t> Importer<'t, '_, '_> {
             }
             place_mesh(mesh, map, flip_normals);
             match crease {
-                Some(degrees) if !face_normals => crease_normals(mesh, degrees),
+                Some(degrees) if !face_normals => creased_normals(mesh, degrees),
                 _ if !face_normals && mesh.normals.is_empty() => smooth_normals(mesh, points),
                 _ => {}
             }
