@@ -5,16 +5,19 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::camera::CameraModel;
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
-use crate::light::{Lights, VisibleRegion};
+use crate::light::{Lights, SkyView, VisibleRegion, cosine_hemisphere};
 use crate::photon_pass::{Keep, PhotonPass};
 use crate::trace::Tracer;
 use crate::world::World;
-use photinus_geometry::{Ray, Vec3};
+use photinus_geometry::{Frame, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::{BuildOptions, Photon};
 
 /// Points looked at along each axis of the picture.
 const GRID: u32 = 48;
+/// Rays to the sky from each point, and clear surfaces that one may cross.
+const SKY_RAYS: u32 = 24;
+const CLEAR_SURFACES: u32 = 6;
 /// Photons sent out by the pilot at most.
 const PHOTONS: u32 = 50_000;
 /// Neighbours whose distance measures density.
@@ -29,6 +32,8 @@ const CAUSTIC_TARGET: f32 = 30.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VisiblePoint {
     pub position: Vec3,
+    /// Face normal on the side that is seen.
+    pub normal: Vec3,
     /// Width of a pixel there.
     pub width: f32,
 }
@@ -79,7 +84,8 @@ pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4]
             let wo = -ray.dir;
             let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, &point, wo);
             if bsdf.has(LobeSet::GATHER) {
-                points.push(VisiblePoint { position: point.position, width });
+                let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
+                points.push(VisiblePoint { position: point.position, normal: point.geometric_normal * side, width });
                 continue;
             }
             sampler.start_vertex();
@@ -94,6 +100,44 @@ pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4]
         }
     }
     points
+}
+
+/// Which directions of the sky the visible points see, straight or through clear surfaces.
+pub(crate) fn sky_view(world: &World, points: &[VisiblePoint], seed: u64) -> SkyView {
+    let mut view = SkyView::new();
+    let mut tracer = Tracer::new(world, false);
+    let (mut rays, mut samplers): (Vec<Ray>, Vec<Sampler>) = (Vec::new(), Vec::new());
+    for (i, point) in points.iter().enumerate() {
+        let frame = Frame::from_normal(point.normal);
+        for j in 0..SKY_RAYS {
+            let mut sampler = Sampler::new(seed, StreamKind::Pilot, 2 << 40, i as u32 * SKY_RAYS + j);
+            let (local, _) = cosine_hemisphere(sampler.next_2d());
+            let lift = point.normal * (point.position.abs().max_element() * 1e-5 + 0.01 * point.width);
+            rays.push(Ray::new(point.position + lift, frame.to_world(local)));
+            samplers.push(sampler);
+        }
+    }
+    let mut hits = Vec::new();
+    for _ in 0..CLEAR_SURFACES {
+        tracer.closest(&rays, &mut hits, &mut Counters::default(), |i| samplers[i].next_1d());
+        let (mut next, mut next_samplers) = (Vec::new(), Vec::new());
+        for ((ray, hit), sampler) in rays.iter().zip(&hits).zip(&samplers) {
+            if !hit.is_hit() {
+                view.add(ray.dir, true);
+                continue;
+            }
+            let point = world.surface(ray, hit, 0.0);
+            let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, &point, -ray.dir);
+            if bsdf.has(LobeSet::DELTA_TRANSMISSION) {
+                next.push(Ray::new(point.ray_origin(ray.dir), ray.dir));
+                next_samplers.push(sampler.clone());
+            } else {
+                view.add(ray.dir, false);
+            }
+        }
+        (rays, samplers) = (next, next_samplers);
+    }
+    view
 }
 
 /// The sphere around most of what is visible; around everything where nothing is, or where it is most of the scene.

@@ -70,12 +70,9 @@ impl<'w> Renderer<'w> {
             Mode::Direct => DEFAULT_LEVELS,
             _ => u32::MAX,
         });
-        let points = if settings.mode == Mode::Path {
-            Vec::new()
-        } else {
-            pilot::visible_points(world, &camera, crop, settings.seed)
-        };
-        let lights = Lights::new(world, pilot::visible_region(world, &points));
+        let points = pilot::visible_points(world, &camera, crop, settings.seed);
+        let view = pilot::sky_view(world, &points, settings.seed);
+        let lights = Lights::new(world, pilot::visible_region(world, &points), &view);
         let mut renderer = Self {
             world,
             layout,

@@ -1,15 +1,19 @@
 //! Light from infinity: look-up, and directions in proportion to radiance.
 
 use super::alias::AliasTable;
-use super::area::uniform_sphere;
+use super::sky_view::SkyView;
 use photinus_geometry::{Mat3, Vec3};
 use photinus_scene::{Bitmap, BitmapPixels, EnvironmentLight};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 use std::sync::Arc;
 
+/// Density over the solid angle of one bin of a [`SkyView`].
+const BIN_DENSITY: f32 = SkyView::BINS as f32 * 0.25 * FRAC_1_PI;
+
 /// An environment ready to be looked up and sampled.
 pub(crate) enum Environment {
-    Constant(Vec3),
+    /// Radiance, and the choice among the bins of a [`SkyView`].
+    Constant(Vec3, AliasTable),
     Image(Box<ImageEnvironment>),
 }
 
@@ -27,11 +31,15 @@ pub(crate) struct ImageEnvironment {
 }
 
 impl Environment {
-    pub fn new(light: &EnvironmentLight) -> Self {
+    /// Prepares `light`; directions that `view` finds blocked are chosen rarely.
+    pub fn new(light: &EnvironmentLight, view: &SkyView) -> Self {
         match light {
-            EnvironmentLight::Constant(radiance) => Self::Constant(*radiance),
+            EnvironmentLight::Constant(radiance) => {
+                let weights: Vec<f64> = (0..SkyView::BINS).map(|bin| f64::from(view.factor_of(bin))).collect();
+                Self::Constant(*radiance, AliasTable::new(&weights))
+            }
             EnvironmentLight::Image { bitmap, scale, to_world } => {
-                Self::Image(Box::new(ImageEnvironment::new(bitmap.clone(), *scale, Mat3::from(to_world.matrix3))))
+                Self::Image(Box::new(ImageEnvironment::new(bitmap.clone(), *scale, Mat3::from(to_world.matrix3), view)))
             }
         }
     }
@@ -39,7 +47,7 @@ impl Environment {
     /// Radiance that arrives along `dir`, seen looking in direction `dir` (unit, world).
     pub fn radiance(&self, dir: Vec3) -> Vec3 {
         match self {
-            Self::Constant(radiance) => *radiance,
+            Self::Constant(radiance, _) => *radiance,
             Self::Image(image) => image.radiance(dir),
         }
     }
@@ -47,7 +55,7 @@ impl Environment {
     /// Mean radiance over all directions.
     pub fn mean(&self) -> Vec3 {
         match self {
-            Self::Constant(radiance) => *radiance,
+            Self::Constant(radiance, _) => *radiance,
             Self::Image(image) => image.mean,
         }
     }
@@ -55,7 +63,10 @@ impl Environment {
     /// A direction to look in and its density over solid angle.
     pub fn sample(&self, choice: f32, u: [f32; 2]) -> (Vec3, f32) {
         match self {
-            Self::Constant(_) => (uniform_sphere(u), 0.25 * FRAC_1_PI),
+            Self::Constant(_, bins) => {
+                let (bin, probability, _) = bins.sample(choice);
+                (SkyView::direction(bin, u), probability * BIN_DENSITY)
+            }
             Self::Image(image) => image.sample(choice, u),
         }
     }
@@ -63,7 +74,7 @@ impl Environment {
     /// Density of [`Environment::sample`] over solid angle.
     pub fn pdf(&self, dir: Vec3) -> f32 {
         match self {
-            Self::Constant(_) => 0.25 * FRAC_1_PI,
+            Self::Constant(_, bins) => bins.probability(SkyView::bin(dir)) * BIN_DENSITY,
             Self::Image(image) => image.pdf(dir),
         }
     }
@@ -71,14 +82,14 @@ impl Environment {
     /// Bytes of the sampling tables.
     pub fn bytes(&self) -> usize {
         match self {
-            Self::Constant(_) => 0,
+            Self::Constant(..) => SkyView::BINS * 12,
             Self::Image(image) => image.width * (image.height + 1) * 12,
         }
     }
 }
 
 impl ImageEnvironment {
-    fn new(bitmap: Arc<Bitmap>, scale: f32, matrix: Mat3) -> Self {
+    fn new(bitmap: Arc<Bitmap>, scale: f32, matrix: Mat3, view: &SkyView) -> Self {
         // Only the rotation matters: the columns are made orthonormal.
         let x = matrix.x_axis.try_normalize().unwrap_or(Vec3::X);
         let y = (matrix.y_axis - x * x.dot(matrix.y_axis)).try_normalize().unwrap_or(Vec3::Y);
@@ -106,7 +117,9 @@ impl ImageEnvironment {
                 for c in 0..3 {
                     mean[c] += f64::from(color[c]) * solid_angle;
                 }
-                weights.push(f64::from(color.max_element().max(0.0)) * solid_angle);
+                let middle = image.direction(row, column, [0.5, 0.5]);
+                let chance = color.max_element().max(0.0) * view.factor(middle);
+                weights.push(f64::from(chance) * solid_angle);
             }
         }
         image.mean = Vec3::from(mean.map(|m| (m / (4.0 * std::f64::consts::PI)) as f32));
@@ -175,13 +188,17 @@ impl ImageEnvironment {
     fn sample(&self, choice: f32, u: [f32; 2]) -> (Vec3, f32) {
         let (cell, probability, _) = self.cells.sample(choice);
         let (row, column) = (cell / self.width, cell % self.width);
+        (self.direction(row, column, u), probability / self.row_solid_angle(row))
+    }
+
+    /// A direction uniform over a cell.
+    fn direction(&self, row: usize, column: usize, u: [f32; 2]) -> Vec3 {
         let [top, bottom] = self.row_bounds(row);
         let (cos_top, cos_bottom) = (libm::cosf(top), libm::cosf(bottom));
         let y = cos_top + (cos_bottom - cos_top) * u[1];
         let r = (1.0 - y * y).max(0.0).sqrt();
         let phi = (column as f32 + 0.5 + u[0]) / self.width as f32 * TAU;
-        let local = Vec3::new(r * libm::sinf(phi), y, -r * libm::cosf(phi));
-        (self.to_world * local, probability / self.row_solid_angle(row))
+        self.to_world * Vec3::new(r * libm::sinf(phi), y, -r * libm::cosf(phi))
     }
 
     fn pdf(&self, dir: Vec3) -> f32 {
@@ -193,8 +210,16 @@ impl ImageEnvironment {
 
 #[cfg(test)]
 mod tests {
+    use super::super::area::uniform_sphere;
     use super::*;
     use photinus_geometry::Affine3A;
+
+    /// A window in one direction.
+    fn view() -> SkyView {
+        let mut view = SkyView::new();
+        (0..500).for_each(|i| view.add(SkyView::direction(i % 60 + 100, [0.5, 0.5]), true));
+        view
+    }
 
     fn picture() -> Environment {
         let (width, height) = (16u32, 8u32);
@@ -206,14 +231,15 @@ mod tests {
             .collect();
         let bitmap = Arc::new(Bitmap { width, height, pixels: BitmapPixels::RgbaF32(data) });
         let to_world = Affine3A::from_rotation_y(0.7) * Affine3A::from_rotation_x(-0.4);
-        Environment::new(&EnvironmentLight::Image { bitmap, scale: 2.0, to_world })
+        Environment::new(&EnvironmentLight::Image { bitmap, scale: 2.0, to_world }, &view())
     }
 
     /// The estimator radiance / pdf has the mean radiance times 4 pi as its expectation, whatever the picture.
     #[test]
     fn samples_have_the_density_that_pdf_states() {
-        for environment in [picture(), Environment::Constant(Vec3::new(1.0, 2.0, 3.0))] {
-            let n = 1 << 15;
+        for environment in [picture(), Environment::new(&EnvironmentLight::Constant(Vec3::new(1.0, 2.0, 3.0)), &view())]
+        {
+            let n = 1 << 17;
             let (mut sum, mut uniform) = (Vec3::ZERO, Vec3::ZERO);
             for i in 0..n {
                 let mut s = photinus_num::Sampler::new(3, photinus_num::StreamKind::Test, 0, i);

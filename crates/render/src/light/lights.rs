@@ -3,6 +3,7 @@
 use super::alias::AliasTable;
 use super::area::{cosine_hemisphere, uniform_cone, uniform_sphere, uniform_triangle};
 use super::environment::Environment;
+use super::sky_view::SkyView;
 use super::sphere;
 use crate::camera::uniform_disk;
 use crate::{SurfacePoint, world::World};
@@ -69,8 +70,9 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// The lights of `world`, chosen in proportion to their power; light from infinity counts what falls on `region`.
-    pub fn new(world: &World, region: VisibleRegion) -> Self {
+    /// The lights of `world`, chosen in proportion to their power; light from infinity counts what falls on `region`, by
+    /// the share of it that `view` finds open.
+    pub(crate) fn new(world: &World, region: VisibleRegion, view: &SkyView) -> Self {
         let mut emitters = Vec::new();
         let mut powers = Vec::new();
         let mut first_emitter = vec![u32::MAX; world.shapes.len()];
@@ -111,8 +113,8 @@ impl Lights {
                     (Emitter::Directional { direction: *direction, irradiance: *irradiance }, disc * mean(*irradiance))
                 }
                 Light::Environment(light) => {
-                    let field = Environment::new(light);
-                    let power = 4.0 * f64::from(PI) * disc * mean(field.mean());
+                    let field = Environment::new(light, view);
+                    let power = 4.0 * f64::from(PI) * disc * mean(field.mean()) * view.openness();
                     environment = Some((field, emitters.len()));
                     (Emitter::Environment, power)
                 }

@@ -4,8 +4,11 @@ mod alias;
 mod area;
 mod environment;
 mod lights;
+mod sky_view;
 mod sphere;
 
+pub(crate) use area::cosine_hemisphere;
 pub(crate) use area::uniform_cone;
 pub use lights::{LightSample, Lights, PhotonStart, VisibleRegion};
+pub(crate) use sky_view::SkyView;
 pub(crate) use sphere::cone as sphere_cone;
