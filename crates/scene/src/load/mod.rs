@@ -72,3 +72,6 @@ fn choose(path: &Path) -> Result<&'static list::Format, LoadError> {
     };
     Err(LoadError::Unsupported { path: path.to_path_buf(), what, supported: list::supported() })
 }
+
+#[cfg(test)]
+mod mesh_tests;

@@ -60,13 +60,7 @@ impl Triangulator {
             return Verdict::Covered;
         }
         self.budget += STEPS_PER_CORNER * n as u64;
-        let before = out.len();
-        let simple = self.clip_ears(out);
-        match out.len() - before {
-            0 => Verdict::Degenerate,
-            _ if simple => Verdict::Covered,
-            _ => Verdict::Crossing,
-        }
+        if self.clip_ears(out) { Verdict::Covered } else { Verdict::Crossing }
     }
 
     /// Fills `points` with the polygon as seen along the dominant axis of its normal, counter-clockwise; false where
@@ -104,11 +98,9 @@ impl Triangulator {
             }
             let (a, c) = (self.prev[b as usize], self.next[b as usize]);
             if self.is_ear(a, b, c, rule) {
-                // A flat triangle covers nothing: its middle corner lies on the line between the others.
-                if self.side(a, b, c) != 0.0 {
-                    out.push([a, b, c]);
-                }
-                simple &= rule <= Rule::Touching || (rest == 3 && self.side(a, b, c) == 0.0);
+                // One that is flat as seen along the axis may still have area where the polygon is not planar.
+                out.push([a, b, c]);
+                simple &= rule <= Rule::Touching || self.side(a, b, c) == 0.0;
                 self.next[a as usize] = c;
                 self.prev[c as usize] = a;
                 rest -= 1;

@@ -55,7 +55,7 @@ pub fn read_serialized(
 }
 
 /// Mesh number `index` of a file's bytes, and what was read otherwise than written.
-fn from_bytes(bytes: &[u8], index: usize) -> Result<(SerializedMesh, Vec<String>), String> {
+pub(super) fn from_bytes(bytes: &[u8], index: usize) -> Result<(SerializedMesh, Vec<String>), String> {
     let range = locate(bytes, index)?;
     let bytes = &bytes[range];
     let version = version(bytes)?;
@@ -230,4 +230,4 @@ fn damaged(error: &std::io::Error) -> String {
 
 #[cfg(test)]
 #[path = "serialized_tests.rs"]
-mod tests;
+pub(super) mod tests;

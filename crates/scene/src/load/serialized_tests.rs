@@ -47,6 +47,11 @@ fn file(version: u16, contents: &[Vec<u8>]) -> Vec<u8> {
     out
 }
 
+/// A good file of one mesh, for tests that damage it.
+pub(in crate::load) fn sample_file() -> Vec<u8> {
+    file(4, &[content(4, HAS_NORMALS | HAS_UVS, 5, [0, 1, 2])])
+}
+
 #[test]
 fn versions_precisions_and_attributes() {
     for version in [3, 4] {

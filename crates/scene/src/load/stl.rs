@@ -51,7 +51,7 @@ pub fn load(path: &Path, context: &mut Context<'_>) -> Result<Draft, LoadError> 
 }
 
 /// The mesh of an STL file's bytes, and what was read otherwise than written.
-fn from_bytes(bytes: &[u8]) -> Result<(Mesh, Vec<Fault>), Fault> {
+pub(super) fn from_bytes(bytes: &[u8]) -> Result<(Mesh, Vec<Fault>), Fault> {
     let mut notes = Vec::new();
     let declared = bytes.get(80..HEADER).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
     let room = bytes.len().saturating_sub(HEADER) / FACET;

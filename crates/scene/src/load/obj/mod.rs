@@ -37,7 +37,7 @@ pub struct ObjFile {
 
 /// What becomes of faces without normals.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum MissingNormals {
+pub(super) enum MissingNormals {
     /// A part without any keeps none; single faces without get their own.
     LeaveOut,
     /// Smooth within a smoothing group and flat outside, as the format has it. A file that never speaks of smoothing
@@ -81,7 +81,10 @@ fn read(place: &Place, path: &Path, missing: MissingNormals, context: &mut Conte
 }
 
 /// The content of an OBJ file, and what was read otherwise than written.
-fn from_bytes(bytes: &[u8], missing: MissingNormals) -> Result<(ObjFile, Vec<super::text::Fault>), super::text::Fault> {
+pub(super) fn from_bytes(
+    bytes: &[u8],
+    missing: MissingNormals,
+) -> Result<(ObjFile, Vec<super::text::Fault>), super::text::Fault> {
     let mut raw = parse::parse(&decode(bytes))?;
     let libraries = std::mem::take(&mut raw.libraries);
     let (parts, notes) = build::build(raw, missing)?;

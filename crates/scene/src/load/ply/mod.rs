@@ -54,7 +54,7 @@ pub fn load(path: &Path, context: &mut Context<'_>) -> Result<Draft, LoadError> 
 }
 
 /// The mesh of a PLY file's bytes, and what was read otherwise than written.
-fn from_bytes(bytes: &[u8]) -> Result<(Mesh, Vec<Fault>), Fault> {
+pub(super) fn from_bytes(bytes: &[u8]) -> Result<(Mesh, Vec<Fault>), Fault> {
     let bytes = if is_gzip(bytes) {
         Cow::Owned(gunzip(bytes).map_err(|message| Fault::new(0, message))?)
     } else {
