@@ -51,7 +51,7 @@ impl PreparedQuery {
 
     /// cos 60 = 1/2: with v the stored normal of any length, v . n >= |v| / 2, squared to save the root.
     #[inline]
-    fn normal_within_60(&self, surface: u32) -> bool {
+    pub(crate) fn normal_within_60(&self, surface: u32) -> bool {
         let v = decode_scaled(normal_code(surface), NORMAL_MAX);
         let dot = (v.x * self.normal.x + v.y * self.normal.y) + v.z * self.normal.z;
         let length_sq = (v.x * v.x + v.y * v.y) + v.z * v.z;

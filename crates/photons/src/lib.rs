@@ -3,6 +3,10 @@
 //!
 //! [`build`] makes a member of the family by its command-line name; [`SEARCHES`] lists the members.
 
+// The shared test inputs name this crate as the tests outside of it do.
+#[cfg(test)]
+extern crate self as photinus_photons;
+
 mod error;
 mod flux;
 mod inclusion;

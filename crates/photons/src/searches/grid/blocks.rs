@@ -1,6 +1,7 @@
-//! Photons sixteen at a time, field by field: the form that the vector kernels read.
+//! Photons sixteen at a time, field by field: the form that the vector kernels read; and the blocks' boxes.
 
 use crate::Photon;
+use photinus_geometry::Vec3;
 
 /// Photons in a block: the virtual lanes of every kernel.
 pub(crate) const LANES: usize = 16;
@@ -51,10 +52,38 @@ impl Block {
         )
     }
 
-    /// Squared distance of a lane's photon from `position`; NaN for an empty lane.
+    /// Squared distance of each lane's photon from `position`; NaN for an empty lane.
     #[inline]
-    pub(crate) fn distance_sq(&self, lane: usize, position: [f32; 3]) -> f32 {
-        let [dx, dy, dz] = [self.x[lane] - position[0], self.y[lane] - position[1], self.z[lane] - position[2]];
-        (dx * dx + dy * dy) + dz * dz
+    pub(crate) fn distances_sq(&self, position: Vec3) -> [f32; LANES] {
+        std::array::from_fn(|lane| {
+            let d = [self.x[lane] - position.x, self.y[lane] - position.y, self.z[lane] - position.z];
+            (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]
+        })
+    }
+}
+
+/// Bounds of every block's photons, field by field, with sixteen boxes that nothing touches behind the last.
+#[derive(Debug, Default)]
+pub(crate) struct Boxes {
+    /// Least x, y, z, then largest x, y, z.
+    pub(crate) bounds: [Vec<f32>; 6],
+}
+
+impl Boxes {
+    pub(crate) fn around(blocks: &[Block]) -> Self {
+        let bounds = std::array::from_fn(|side| {
+            let of = |b: &Block| {
+                let lanes = [&b.x, &b.y, &b.z][side % 3].iter().copied();
+                // `f32::min` and `f32::max` pass over the NaN of empty lanes.
+                if side < 3 { lanes.fold(f32::INFINITY, f32::min) } else { lanes.fold(f32::NEG_INFINITY, f32::max) }
+            };
+            blocks.iter().map(of).chain([f32::NAN; LANES]).collect()
+        });
+        Self { bounds }
+    }
+
+    /// Memory, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        self.bounds.iter().map(|b| b.capacity() * size_of::<f32>()).sum()
     }
 }

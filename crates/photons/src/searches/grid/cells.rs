@@ -1,152 +1,189 @@
-//! The geometry of the grid: which cell holds a point, and which cells a ball may touch.
+//! The geometry of the grid: which cell holds a point, the order of the cells, and which cells a ball may touch.
+//!
+//! Cells are a little more than two gather radii wide, so that a ball meets two along each axis. Each is cut into
+//! 8 x 8 x 8 fine cells, whose Morton order (Morton 1966) is the order of the photons: neighbours in memory are
+//! neighbours in space.
 
 use photinus_geometry::{Aabb, Vec3};
 
-/// Cells along x that share one line of the cell table.
-pub(crate) const SEGMENT_CELLS: u32 = 16;
-/// Most cells along an axis: keeps a cell's place in f32 exact to 1/8 of a cell.
-const MAX_CELLS: f64 = (1u32 << 20) as f64;
-/// Least edge of a cell, scene units: photons closer than 1e-18 have a squared distance that underflows, so that
-/// they may be found at any radius; that must be far less than a cell.
-const MIN_EDGE: f64 = 1e-15;
-/// Relative error of a place in cells, with a margin: one subtraction and one product of f32 make at most 2^-23.
+/// Fine cells along the edge of a cell, as a power of two.
+const FINE_LEVELS: u32 = 3;
+const FINE: f32 = (1u32 << FINE_LEVELS) as f32;
+/// Edge of a cell in gather radii: two, and room for rounding.
+const EDGE_IN_RADII: f32 = 2.02;
+/// Bits of a fine cell along an axis: its place is exact to a quarter of a fine cell, and three fit a key.
+const AXIS_BITS: u32 = 21;
+/// Least edge of a fine cell, scene units: photons closer than 1e-18 have a squared distance that underflows, so that
+/// they may be found at any radius; that must be far less than a fine cell.
+const MIN_FINE_EDGE: f64 = 1e-15;
+/// Relative error of a place in fine cells, with a margin: one subtraction and one product of f32 make 2^-23.
 const PLACE_SLACK: f32 = 1.0 / (1u32 << 21) as f32;
-/// Relative error of a squared distance and of the radius in cells, with a margin: about 2^-22.
+/// Relative error of a squared distance and of the radius in fine cells, with a margin: about 2^-22.
 const RADIUS_SLACK: f32 = 1.0 / (1u32 << 19) as f32;
-/// What underflow may add to a distance, in cells.
+/// What underflow may add to a distance, in fine cells.
 const UNDERFLOW_SLACK: f32 = 1.0 / 512.0;
+/// A ball of more fine cells than this is not worth cells; f32 counts so far without gaps.
+const MAX_RADIUS: f32 = (1u32 << 22) as f32;
 
 /// A uniform grid over the photons' box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cells {
     min: Vec3,
+    max: Vec3,
+    /// Fine cells a scene unit.
     inv_edge: f32,
+    /// Fine cells along each axis.
+    fine_count: Vec3,
     /// Cells along each axis.
     count: [u32; 3],
-    /// Segments along x.
-    segments_x: u64,
 }
 
-/// Rows of cells that a ball may touch: see [`Cells::ball`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ball {
-    u: Vec3,
-    slack: Vec3,
-    radius_sq: f32,
-    y: [u32; 2],
-    z: [u32; 2],
-}
+/// Cells from the first to the last along each axis.
+pub(crate) type CellBox = [[u32; 2]; 3];
 
 impl Cells {
-    /// A grid of cells of `edge` (positive) over `bounds` (not empty), with fewer and larger cells where the box is
-    /// more than 2^20 edges long; `None` where the box is so large that distances overflow.
-    pub(crate) fn new(bounds: Aabb, edge: f32) -> Option<Self> {
+    /// A grid for gather radii of `radius` (positive) over `bounds` (not empty), with larger cells where the box is
+    /// more than 2^21 fine cells long; `None` where the box is so large that distances overflow.
+    pub(crate) fn new(bounds: Aabb, radius: f32) -> Option<Self> {
         let size = bounds.size();
         if !(size.max_element() < 1e18) {
             return None;
         }
-        let edge = f64::from(edge).max(MIN_EDGE).max(f64::from(size.max_element()) / (MAX_CELLS - 2.0));
+        let edge = f64::from(radius) * f64::from(EDGE_IN_RADII / FINE);
+        let edge = edge.max(MIN_FINE_EDGE).max(f64::from(size.max_element()) / f64::from((1 << AXIS_BITS) - 2));
         let inv_edge = (1.0 / edge) as f32;
-        if !(inv_edge > 0.0 && inv_edge.is_finite()) {
+        if !(inv_edge > 0.0) {
             return None;
         }
-        let count = (size * inv_edge).to_array().map(|u| u as u32 + 1);
-        Some(Self { min: bounds.min, inv_edge, count, segments_x: u64::from(count[0].div_ceil(SEGMENT_CELLS)) })
+        let fine_count = (size * inv_edge).floor() + 1.0;
+        let count = fine_count.to_array().map(|fine| ((fine as u32 - 1) >> FINE_LEVELS) + 1);
+        Some(Self { min: bounds.min, max: bounds.max, inv_edge, fine_count, count })
     }
 
-    /// Segments in all, empty ones included.
-    pub(crate) fn segment_count(&self) -> u64 {
-        self.segments_x * u64::from(self.count[1]) * u64::from(self.count[2])
-    }
-
-    /// Edge of a cell, scene units.
-    pub(crate) fn edge(&self) -> f32 {
-        1.0 / self.inv_edge
-    }
-
-    /// Place of a point in units of cells; monotone along each axis.
+    /// Place of a point in units of fine cells; monotone along each axis.
     #[inline]
-    fn place(&self, p: Vec3) -> Vec3 {
+    pub(crate) fn place(&self, p: Vec3) -> Vec3 {
         (p - self.min) * self.inv_edge
     }
 
-    /// Index of the cell of a point inside the box, x fastest, rows padded to whole segments.
-    #[inline]
-    pub(crate) fn cell(&self, p: Vec3) -> u64 {
-        let u = self.place(p);
-        self.segment(u.y as u32, u.z as u32, u.x as u32 / SEGMENT_CELLS) * u64::from(SEGMENT_CELLS)
-            + u64::from(u.x as u32 % SEGMENT_CELLS)
+    /// A bound on the Morton keys: they are below.
+    pub(crate) fn key_end(&self) -> u64 {
+        let bits = self.fine_count.to_array().map(|fine| 32 - (fine as u32 - 1).leading_zeros());
+        1 << (3 * bits.into_iter().max().unwrap_or(0))
     }
 
-    /// As [`Cells::cell`] for any point: outside the box, the nearest cell's.
+    /// Morton key of the fine cell of a point inside the box.
     #[inline]
-    pub(crate) fn nearest_cell(&self, p: Vec3) -> u64 {
-        let u = self.place(p).to_array();
-        // The cast takes NaN and what is below zero to zero.
-        let [x, y, z] = std::array::from_fn(|axis| (u[axis] as u32).min(self.count[axis] - 1));
-        self.segment(y, z, x / SEGMENT_CELLS) * u64::from(SEGMENT_CELLS) + u64::from(x % SEGMENT_CELLS)
+    pub(crate) fn key(&self, p: Vec3) -> u64 {
+        let [x, y, z] = self.place(p).to_array().map(|u| spread(u as u64));
+        x | y << 1 | z << 2
     }
 
-    /// Index of a segment: x fastest, then y, then z.
+    /// Index of the cell of a Morton key.
     #[inline]
-    pub(crate) fn segment(&self, y: u32, z: u32, segment_x: u32) -> u64 {
-        (u64::from(z) * u64::from(self.count[1]) + u64::from(y)) * self.segments_x + u64::from(segment_x)
+    pub(crate) fn cell_of_key(&self, key: u64) -> u64 {
+        let key = key >> (3 * FINE_LEVELS);
+        self.cell([compact(key), compact(key >> 1), compact(key >> 2)])
     }
 
-    /// Whether a ball of this radius is small enough to be worth cells.
+    /// Whether two Morton keys are of one cell.
     #[inline]
-    pub(crate) fn is_countable(&self, radius: f32) -> bool {
-        radius * self.inv_edge < MAX_CELLS as f32
+    pub(crate) fn same_cell(a: u64, b: u64) -> bool {
+        (a ^ b) >> (3 * FINE_LEVELS) == 0
     }
 
-    /// The rows that the ball around `position` may touch; `None` where it touches no cell.
+    /// Index of the cell of these coordinates.
     #[inline]
-    pub(crate) fn ball(&self, position: Vec3, radius: f32) -> Option<Ball> {
-        let u = self.place(position);
-        let count = Vec3::new(self.count[0] as f32, self.count[1] as f32, self.count[2] as f32);
-        let slack = (u.abs() + count) * PLACE_SLACK;
-        let radius = radius * self.inv_edge * (1.0 + RADIUS_SLACK) + UNDERFLOW_SLACK;
-        let span = |axis: usize| self.span(axis, u[axis], radius + slack[axis]);
-        let (_, y, z) = (span(0)?, span(1)?, span(2)?);
-        Some(Ball { u, slack, radius_sq: radius * radius, y, z })
+    pub(crate) fn cell(&self, [x, y, z]: [u32; 3]) -> u64 {
+        (u64::from(z) * u64::from(self.count[1]) + u64::from(y)) * u64::from(self.count[0]) + u64::from(x)
     }
 
-    /// First and last cell of an axis within `half` cells of `u`; `None` where there is none or a bound is NaN.
+    /// The lower corner, in fine cells, of the half cell (half as long as a cell) around a place: balls of equal
+    /// radius around places of one half cell are given the same cells.
     #[inline]
-    fn span(&self, axis: usize, u: f32, half: f32) -> Option<[u32; 2]> {
-        let (low, high) = (u - half, u + half);
-        let count = self.count[axis];
-        (high >= 0.0 && low < count as f32).then(|| [low as u32, (high as u32).min(count - 1)])
+    pub(crate) fn half_cell(place: Vec3) -> Vec3 {
+        (place * (2.0 / FINE)).floor() * (FINE / 2.0)
     }
 
-    /// Calls `visit` with (y, z, first x, last x) of the cells that a ball may touch, a row at a time, ascending in z
-    /// and then y.
+    /// A radius in fine cells, with a margin for rounding.
     #[inline]
-    pub(crate) fn rows(&self, ball: &Ball, mut visit: impl FnMut(u32, u32, [u32; 2])) {
-        let outside = |cell: u32, u: f32, slack: f32| {
-            let cell = cell as f32;
-            ((cell - u).max(u - (cell + 1.0)) - slack).max(0.0)
-        };
-        for z in ball.z[0]..=ball.z[1] {
-            let dz = outside(z, ball.u.z, ball.slack.z);
-            let rest = ball.radius_sq - dz * dz;
-            for y in ball.y[0]..=ball.y[1] {
-                let dy = outside(y, ball.u.y, ball.slack.y);
-                let chord_sq = rest - dy * dy;
-                if chord_sq >= 0.0
-                    && let Some(x) = self.span(0, ball.u.x, chord_sq.sqrt() + ball.slack.x)
-                {
-                    visit(y, z, x);
-                }
-            }
+    pub(crate) fn radius(&self, radius: f32) -> f32 {
+        radius * self.inv_edge * (1.0 + RADIUS_SLACK) + UNDERFLOW_SLACK
+    }
+
+    /// The cells that balls of `radius` fine cells around the places of a half cell may touch.
+    #[inline]
+    pub(crate) fn reached(&self, half_cell: Vec3, radius: f32) -> Reached {
+        if !(radius < MAX_RADIUS) {
+            return Reached::Everything;
         }
+        let slack = (half_cell.abs() + self.fine_count + FINE) * PLACE_SLACK + radius;
+        let low = (half_cell - slack) * (1.0 / FINE);
+        let high = (half_cell + (FINE / 2.0) + slack) * (1.0 / FINE);
+        let mut cells = [[0; 2]; 3];
+        for axis in 0..3 {
+            let count = self.count[axis];
+            // A place that overflowed gives NaN or infinity, and is farther away than the radius.
+            if !(high[axis] >= 0.0 && low[axis] < count as f32) {
+                return Reached::Nothing;
+            }
+            cells[axis] = [low[axis] as u32, (high[axis] as u32).min(count - 1)];
+        }
+        Reached::Cells(cells)
+    }
+
+    /// A radius around `position` that holds about `k` photons on an even surface, `photons_a_cell` in every cell
+    /// that it crosses; from outside the box it reaches in.
+    pub(crate) fn reach(&self, position: Vec3, k: usize, photons_a_cell: f32) -> f32 {
+        let cells = (1.3 * k as f32 / (std::f32::consts::PI * photons_a_cell)).sqrt();
+        let to_box = (position - position.clamp(self.min, self.max)).length();
+        (cells * FINE / self.inv_edge + to_box).max(f32::MIN_POSITIVE)
     }
 }
 
-impl Ball {
-    /// Rows that the ball's box touches.
-    #[inline]
-    pub(crate) fn row_count(&self) -> u64 {
-        u64::from(self.y[1] - self.y[0] + 1) * u64::from(self.z[1] - self.z[0] + 1)
+/// What [`Cells::reached`] found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Reached {
+    /// No cell.
+    Nothing,
+    /// These cells.
+    Cells(CellBox),
+    /// More cells than are worth counting.
+    Everything,
+}
+
+/// The low 21 bits of `v`, each followed by two zeros.
+#[inline]
+fn spread(v: u64) -> u64 {
+    let v = v & 0x1F_FFFF;
+    let v = (v | v << 32) & 0x001F_0000_0000_FFFF;
+    let v = (v | v << 16) & 0x001F_0000_FF00_00FF;
+    let v = (v | v << 8) & 0x100F_00F0_0F00_F00F;
+    let v = (v | v << 4) & 0x10C3_0C30_C30C_30C3;
+    (v | v << 2) & 0x1249_2492_4924_9249
+}
+
+/// Every third bit of `v` from the lowest: undoes [`spread`].
+#[inline]
+fn compact(v: u64) -> u32 {
+    let v = v & 0x1249_2492_4924_9249;
+    let v = (v | v >> 2) & 0x10C3_0C30_C30C_30C3;
+    let v = (v | v >> 4) & 0x100F_00F0_0F00_F00F;
+    let v = (v | v >> 8) & 0x001F_0000_FF00_00FF;
+    let v = (v | v >> 16) & 0x001F_0000_0000_FFFF;
+    ((v | v >> 32) & 0x1F_FFFF) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_spread_as_the_loop_says() {
+        for v in [0u64, 1, 2, 0x1F_FFFF, 0x15_5555, 0x0A_BCDE, 0x10_0001] {
+            let slow = (0..21).fold(0u64, |sum, bit| sum | (v >> bit & 1) << (3 * bit));
+            assert_eq!(spread(v), slow);
+            assert_eq!(u64::from(compact(slow | slow << 1)), v);
+        }
     }
 }

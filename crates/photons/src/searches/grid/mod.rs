@@ -1,119 +1,142 @@
 //! A sorted uniform grid: photons in the order of their cells, in blocks of sixteen; the renderer's own search.
 //!
 //! The search of Teschner et al., "Optimized Spatial Hashing for Collision Detection of Deformable Objects" (VMV
-//! 2003), in the sorted form of Green, "Particle Simulation using CUDA" (2010), with rows of cells in place of cells:
-//! a row's photons lie together, so that a query reads a few long runs.
+//! 2003), over photons that are sorted as in Green, "Particle Simulation using CUDA" (2010), but in Morton order and
+//! with a box around each sixteen: a query looks up the cells around it, keeps the blocks whose boxes it reaches and
+//! reads those photons sixteen at a time.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod blocks;
 mod cells;
+mod kernels;
 mod scalar;
+mod sort;
 mod table;
+#[cfg(test)]
+mod tests;
 
 use crate::inclusion::{PreparedQuery, radius_sq};
-use crate::nearest::NearestHeap;
 use crate::{BuildOptions, GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
-use blocks::{Block, LANES};
-use cells::{Cells, SEGMENT_CELLS};
+use blocks::{Block, Boxes, LANES};
+use cells::{Cells, Reached};
+use kernels::{Candidates, NormalMemo, VectorKernels};
 use photinus_geometry::{Aabb, Vec3};
 use photinus_profile::SearchCounters;
+use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::OnceLock;
 use table::CellTable;
 
 pub(crate) const ABOUT: &str = "sorted uniform grid with vector kernels";
 
-/// Cells along the edge of a cube of one gather radius.
-const CELLS_PER_RADIUS: f32 = 2.0;
+/// Queries that are worth a task of their own.
+const QUERIES_A_TASK: usize = 512;
 
 /// The finished grid.
 pub(crate) struct Grid {
     /// `None` where the photons' box is too large for cells, or there are none: every query then reads all blocks.
     index: Option<(Cells, CellTable)>,
     blocks: Vec<Block>,
-    /// The id of each slot's photon.
+    boxes: Boxes,
+    /// The id of each slot's photon, padded to whole blocks.
     ids: Vec<u32>,
+    photon_count: usize,
     /// The slot of each id's photon; made when first asked for.
     slots: OnceLock<Vec<u32>>,
+    kernels: VectorKernels,
+}
+
+/// What one query hands to the next, so that neighbours share work; results do not depend on it.
+struct Scratch {
+    /// The half cell and the radius (fine cells) that `ranges` are for.
+    half_cell: Vec3,
+    radius: f32,
+    /// Blocks of the cells around, as ascending ranges that do not overlap.
+    ranges: Vec<Range<u32>>,
+    /// Blocks in reach of the query.
+    hits: Vec<u32>,
+    memo: NormalMemo,
+}
+
+impl Scratch {
+    fn new() -> Self {
+        Self { half_cell: Vec3::NAN, radius: -1.0, ranges: Vec::new(), hits: Vec::new(), memo: NormalMemo::NONE }
+    }
 }
 
 impl Grid {
-    pub(crate) fn new(photons: Vec<Photon>, options: &BuildOptions) -> Self {
+    pub(crate) fn new(photons: &[Photon], options: &BuildOptions) -> Self {
+        Self::with_kernels(photons, options, kernels::available()[0])
+    }
+
+    fn with_kernels(photons: &[Photon], options: &BuildOptions, kernels: VectorKernels) -> Self {
         let bounds = Aabb::around(photons.iter().map(Photon::position));
         let radius = options.radius().unwrap_or_else(|| typical_radius(bounds, photons.len()));
-        let cells = Cells::new(bounds, radius / CELLS_PER_RADIUS);
-        let mut keyed: Vec<(u64, u32)> =
-            (0u32..).zip(&photons).map(|(id, p)| (cells.as_ref().map_or(0, |c| c.cell(p.position())), id)).collect();
-        keyed.sort_unstable();
-        let table = cells.map(|c| (c, CellTable::new(keyed.iter().map(|k| k.0), c.segment_count())));
+        let cells = Cells::new(bounds, radius);
+        let key = |p: &Photon| cells.as_ref().map_or(0, |c| c.key(p.position()));
+        let keyed: Vec<sort::Keyed> = (0u32..).zip(photons).map(|(id, p)| (key(p), id)).collect();
+        let keyed = sort::sort_by_key(keyed, cells.map_or(1, |c| c.key_end()));
+        let index = cells.map(|c| (c, CellTable::new(&c, keyed.iter().map(|k| k.0))));
         let mut blocks = vec![Block::EMPTY; photons.len().div_ceil(LANES)];
-        for (slot, (_, id)) in keyed.iter().enumerate() {
-            blocks[slot / LANES].set(slot % LANES, &photons[*id as usize]);
+        let mut ids = vec![u32::MAX; blocks.len() * LANES];
+        for ((block, keyed), ids) in blocks.iter_mut().zip(keyed.chunks(LANES)).zip(ids.chunks_mut(LANES)) {
+            for (lane, (_, id)) in keyed.iter().enumerate() {
+                block.set(lane, &photons[*id as usize]);
+                ids[lane] = *id;
+            }
         }
-        let ids = keyed.iter().map(|k| k.1).collect();
-        Self { index: table, blocks, ids, slots: OnceLock::new() }
+        let boxes = Boxes::around(&blocks);
+        Self { index, blocks, boxes, ids, photon_count: photons.len(), slots: OnceLock::new(), kernels }
     }
 
-    /// Replaces `runs` by the blocks that hold every photon within `radius` of `position`, as ascending runs that do
-    /// not overlap.
-    fn block_runs(&self, position: Vec3, radius: f32, runs: &mut Vec<Range<u32>>) {
-        runs.clear();
-        if !(radius_sq(position, radius) >= 0.0) {
+    /// Fills `scratch.hits` with the blocks that hold every photon within a radius of a position, ascending.
+    #[inline]
+    fn find_blocks(&self, position: Vec3, radius: f32, r2: f32, scratch: &mut Scratch) {
+        scratch.hits.clear();
+        if !(r2 >= 0.0) {
             return;
         }
-        let all = 0..self.blocks.len() as u32;
-        let Some((cells, table)) = &self.index else {
-            runs.push(all);
-            return;
+        if let Some((cells, table)) = &self.index {
+            let half_cell = Cells::half_cell(cells.place(position));
+            let radius = cells.radius(radius);
+            // Not equal where either is NaN.
+            if half_cell != scratch.half_cell || !(radius <= scratch.radius) {
+                (scratch.half_cell, scratch.radius) = (half_cell, radius);
+                self.collect_ranges(cells, table, scratch);
+            }
+        } else {
+            scratch.ranges.clear();
+            scratch.ranges.push(0..self.blocks.len() as u32);
+        }
+        (self.kernels.cull)(&self.boxes, &scratch.ranges, position, r2, &mut scratch.hits);
+    }
+
+    /// The blocks of the cells that balls of `scratch.radius` around `scratch.half_cell` may touch.
+    fn collect_ranges(&self, cells: &Cells, table: &CellTable, scratch: &mut Scratch) {
+        let ranges = &mut scratch.ranges;
+        ranges.clear();
+        let everything = match cells.reached(scratch.half_cell, scratch.radius) {
+            Reached::Nothing => return,
+            Reached::Cells(reached) => !table.collect(cells, reached, ranges),
+            Reached::Everything => true,
         };
-        if !cells.is_countable(radius) {
-            runs.push(all);
+        if everything {
+            ranges.push(0..self.blocks.len() as u32);
             return;
         }
-        let Some(ball) = cells.ball(position, radius) else { return };
-        if ball.row_count() > table.len() as u64 {
-            runs.push(all);
-            return;
-        }
-        cells.rows(&ball, |y, z, [first, last]| {
-            for segment_x in first / SEGMENT_CELLS..=last / SEGMENT_CELLS {
-                let base = segment_x * SEGMENT_CELLS;
-                let slots = table.slots(
-                    cells.segment(y, z, segment_x),
-                    first.saturating_sub(base),
-                    (last - base).min(SEGMENT_CELLS - 1),
-                );
-                if slots.is_empty() {
-                    continue;
-                }
-                let run = slots.start / LANES as u32..(slots.end - 1) / LANES as u32 + 1;
-                match runs.last_mut() {
-                    // Slots ascend from row to row, and a block may hold photons of several.
-                    Some(previous) if previous.end >= run.start => previous.end = run.end,
-                    _ => runs.push(run),
-                }
-            }
+        ranges.sort_unstable_by_key(|slots| slots.start);
+        // Slots to blocks: a block may hold photons of several cells.
+        let lanes = LANES as u32;
+        let mut end = 0;
+        ranges.retain_mut(|slots| {
+            let blocks = (slots.start / lanes).max(end)..slots.end.div_ceil(lanes);
+            end = end.max(blocks.end);
+            *slots = blocks;
+            !slots.is_empty()
         });
-    }
-
-    fn gather_one(&self, query: &GatherQuery, kernel: Kernel, runs: &mut Vec<Range<u32>>) -> Gathered {
-        self.block_runs(query.position, query.radius, runs);
-        scalar::gather(&self.blocks, runs, &PreparedQuery::new(query, kernel))
-    }
-
-    /// Calls `visit` with slot and squared distance of every photon within the squared radius in the runs.
-    fn for_each_within(&self, runs: &[Range<u32>], position: Vec3, r2: f32, mut visit: impl FnMut(u32, f32)) {
-        let position = position.to_array();
-        for run in runs {
-            for block in run.clone() {
-                let photons = &self.blocks[block as usize];
-                for lane in 0..LANES {
-                    let d2 = photons.distance_sq(lane, position);
-                    if d2 <= r2 {
-                        visit(block * LANES as u32 + lane as u32, d2);
-                    }
-                }
-            }
-        }
     }
 }
 
@@ -128,10 +151,12 @@ fn typical_radius(bounds: Aabb, photons: usize) -> f32 {
 impl Search for Grid {
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
         assert_eq!(queries.len(), out.len(), "one result a query");
-        let mut runs = Vec::new();
-        for (query, out) in queries.iter().zip(out) {
-            *out = self.gather_one(query, kernel, &mut runs);
-        }
+        let one = |scratch: &mut Scratch, (query, out): (&GatherQuery, &mut Gathered)| {
+            let prepared = PreparedQuery::new(query, kernel);
+            self.find_blocks(query.position, query.radius, prepared.r2, scratch);
+            *out = (self.kernels.gather)(&self.blocks, &scratch.hits, &prepared, &mut scratch.memo);
+        };
+        queries.par_iter().zip(out).with_min_len(QUERIES_A_TASK).for_each_init(Scratch::new, one);
     }
 
     fn gather_counted(
@@ -141,58 +166,76 @@ impl Search for Grid {
         out: &mut [Gathered],
         counters: &mut SearchCounters,
     ) {
-        assert_eq!(queries.len(), out.len(), "one result a query");
-        let mut runs = Vec::new();
+        self.gather(queries, kernel, out);
+        let mut scratch = Scratch::new();
+        let padding = self.blocks.len() * LANES - self.photon_count;
         for (query, out) in queries.iter().zip(out) {
-            *out = self.gather_one(query, kernel, &mut runs);
-            let lanes: u64 = runs.iter().map(|r| r.len() as u64 * LANES as u64).sum();
-            let padding = self.blocks.len() * LANES - self.ids.len();
-            let last_read = runs.last().is_some_and(|r| r.end as usize == self.blocks.len());
+            let r2 = radius_sq(query.position, query.radius);
+            self.find_blocks(query.position, query.radius, r2, &mut scratch);
+            let lanes = scratch.hits.len() * LANES;
+            let reads_last = scratch.hits.last().is_some_and(|block| *block as usize + 1 == self.blocks.len());
             *counters += SearchCounters {
                 searches: 1,
-                photons_tested: lanes - if last_read { padding as u64 } else { 0 },
+                photons_tested: (lanes - if reads_last { padding } else { 0 }) as u64,
                 photons_found: u64::from(out.count),
             };
         }
     }
 
     fn visit(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32)) {
-        let mut runs = Vec::new();
-        self.block_runs(query.position, query.radius, &mut runs);
+        let mut scratch = Scratch::new();
         let prepared = PreparedQuery::new(query, Kernel::Constant);
-        self.for_each_within(&runs, query.position, prepared.r2, |slot, d2| {
-            let photon = self.blocks[slot as usize / LANES].photon(slot as usize % LANES);
-            if prepared.accepts(photon.surface_word()) {
-                visit(&photon, d2);
+        self.find_blocks(query.position, query.radius, prepared.r2, &mut scratch);
+        for block in scratch.hits.iter().map(|block| &self.blocks[*block as usize]) {
+            let distances = block.distances_sq(query.position);
+            for (lane, d2) in distances.into_iter().enumerate() {
+                if d2 <= prepared.r2 && prepared.accepts(block.surface[lane]) {
+                    visit(&block.photon(lane), d2);
+                }
             }
-        });
+        }
     }
 
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
-        let mut runs = Vec::new();
-        self.block_runs(position, radius, &mut runs);
-        found.clear();
-        self.for_each_within(&runs, position, radius_sq(position, radius), |slot, distance_sq| {
-            found.push(Neighbor { distance_sq, photon: self.ids[slot as usize] });
-        });
+        let mut scratch = Scratch::new();
+        let r2 = radius_sq(position, radius);
+        self.find_blocks(position, radius, r2, &mut scratch);
+        let mut candidates = Candidates::default();
+        candidates.start(usize::MAX);
+        (self.kernels.scan)(&self.blocks, &self.ids, &scratch.hits, position, r2, &mut candidates);
+        candidates.take_all(found);
         found.sort_unstable_by_key(|n| n.photon);
     }
 
+    /// Searches balls that grow until one holds `k` photons: those nearest are among them.
     fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>) {
-        let mut runs = Vec::new();
-        self.block_runs(position, radius, &mut runs);
+        found.clear();
         let r2 = radius_sq(position, radius);
-        let mut heap = NearestHeap::new(found, k, r2);
-        self.for_each_within(&runs, position, r2, |slot, distance_sq| {
-            heap.offer(Neighbor { distance_sq, photon: self.ids[slot as usize] });
-        });
-        heap.finish();
+        if k == 0 || r2 < 0.0 {
+            return;
+        }
+        let mut scratch = Scratch::new();
+        let mut candidates = Candidates::default();
+        let mut reach =
+            self.index.as_ref().map_or(radius, |(cells, table)| cells.reach(position, k, table.photons_a_cell()));
+        loop {
+            let last = !(reach < radius);
+            let (ball, ball_sq) = if last { (radius, r2) } else { (reach, reach * reach) };
+            self.find_blocks(position, ball, ball_sq, &mut scratch);
+            candidates.start(k);
+            (self.kernels.scan)(&self.blocks, &self.ids, &scratch.hits, position, ball_sq, &mut candidates);
+            if last || candidates.len() >= k || candidates.len() == self.photon_count {
+                break;
+            }
+            reach *= 2.0;
+        }
+        candidates.finish(found);
     }
 
     fn photon(&self, id: u32) -> Photon {
         let slots = self.slots.get_or_init(|| {
-            let mut slots = vec![0; self.ids.len()];
-            for (slot, id) in (0u32..).zip(&self.ids) {
+            let mut slots = vec![0; self.photon_count];
+            for (slot, id) in (0u32..).zip(&self.ids[..self.photon_count]) {
                 slots[*id as usize] = slot;
             }
             slots
@@ -203,9 +246,10 @@ impl Search for Grid {
 
     fn summary(&self) -> SearchSummary {
         let bytes = self.blocks.capacity() * size_of::<Block>()
+            + self.boxes.bytes()
             + self.ids.capacity() * size_of::<u32>()
             + self.slots.get().map_or(0, |s| s.capacity() * size_of::<u32>())
             + self.index.as_ref().map_or(0, |(_, table)| table.bytes());
-        SearchSummary { name: "grid", photons: self.ids.len() as u64, bytes: bytes as u64 }
+        SearchSummary { name: "grid", photons: self.photon_count as u64, bytes: bytes as u64 }
     }
 }

@@ -1,23 +1,35 @@
-//! The gather kernel one photon at a time: what the vector kernels must equal bit for bit.
+//! The kernels one photon at a time: what the vector kernels must equal bit for bit.
 
-use super::blocks::{Block, LANES};
+use super::blocks::{Block, Boxes, LANES};
+use super::kernels::{Candidates, NormalMemo, VectorKernels, key};
 use crate::Gathered;
 use crate::flux::{mantissas, scale};
 use crate::inclusion::PreparedQuery;
 use photinus_geometry::Vec3;
 use std::ops::Range;
 
-/// Sums the photons that `query` finds in runs of blocks.
-///
+/// These kernels, for any processor.
+pub(crate) const KERNELS: VectorKernels = VectorKernels { name: "scalar", cull, gather, scan };
+
+fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+    let position = position.to_array();
+    let bounds = &boxes.bounds;
+    hits.extend(ranges.iter().flat_map(Clone::clone).filter(|block| {
+        let i = *block as usize;
+        let d: [f32; 3] = std::array::from_fn(|axis| {
+            (bounds[axis][i] - position[axis]).max(position[axis] - bounds[axis + 3][i]).max(0.0)
+        });
+        (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2] <= r2
+    }));
+}
+
 /// The photon of a lane adds to that lane's sums, and the sixteen sums of a channel are added in a fixed tree, so
 /// that the result depends neither on the vector width nor on which blocks without a photon in reach are read.
-pub(crate) fn gather(blocks: &[Block], runs: &[Range<u32>], query: &PreparedQuery) -> Gathered {
+fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, _: &mut NormalMemo) -> Gathered {
     let mut sums = [[0f32; LANES]; 3];
     let mut count = 0;
-    let position = query.position.to_array();
-    for block in runs.iter().flat_map(|run| &blocks[run.start as usize..run.end as usize]) {
-        for lane in 0..LANES {
-            let d2 = block.distance_sq(lane, position);
+    for block in hits.iter().map(|block| &blocks[*block as usize]) {
+        for (lane, d2) in block.distances_sq(query.position).into_iter().enumerate() {
             if d2 <= query.r2 && query.accepts(block.surface[lane]) {
                 let word = block.flux[lane];
                 let weight = scale(word) * query.kernel.weight(d2);
@@ -32,8 +44,7 @@ pub(crate) fn gather(blocks: &[Block], runs: &[Range<u32>], query: &PreparedQuer
 }
 
 /// Halves folded onto one another: lane i + lane i + 8, then 4, 2, 1.
-#[inline]
-pub(crate) fn tree_sum(mut lanes: [f32; LANES]) -> f32 {
+fn tree_sum(mut lanes: [f32; LANES]) -> f32 {
     let mut half = LANES / 2;
     while half > 0 {
         for i in 0..half {
@@ -42,4 +53,19 @@ pub(crate) fn tree_sum(mut lanes: [f32; LANES]) -> f32 {
         half /= 2;
     }
     lanes[0]
+}
+
+fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+    let mut limit = r2;
+    for &block in hits {
+        let free = candidates.free(LANES);
+        let mut count = 0;
+        for (lane, d2) in blocks[block as usize].distances_sq(position).into_iter().enumerate() {
+            if d2 <= limit {
+                free[count] = key(d2, ids[block as usize * LANES + lane]);
+                count += 1;
+            }
+        }
+        limit = candidates.push(count).unwrap_or(limit);
+    }
 }

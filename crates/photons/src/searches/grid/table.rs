@@ -1,123 +1,114 @@
-//! The cell table: where the photons of a cell begin.
+//! The cell table: which photons are a cell's.
 //!
-//! Only occupied segments (rows of sixteen cells) have a line of starts, 64 bytes each. A directory finds the line of
-//! a segment: a plain array where the grid is small, a hash table where the photons are few against the cells.
-//! Memory: at most 64 + 24 bytes an occupied segment, of which there are no more than photons.
+//! A hash table over the occupied cells only, so that the extent of the scene costs nothing. Memory: 16 bytes a slot
+//! and two to four slots an occupied cell, of which there are no more than photons.
 
-use super::cells::SEGMENT_CELLS;
+use super::cells::{CellBox, Cells};
 use std::ops::Range;
 
-const WIDTH: usize = SEGMENT_CELLS as usize;
-/// Stands for a segment without photons.
-const NONE: u32 = u32::MAX;
+/// An occupied cell: its index and its photons' slots.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    cell: u64,
+    first: u32,
+    end: u32,
+}
 
-/// Starts of the photons of every cell.
+/// No cell has this index.
+const FREE: Entry = Entry { cell: u64::MAX, first: 0, end: 0 };
+
+/// Open addressing with linear probing over a power of two of entries, at most half of them taken.
 #[derive(Debug)]
 pub(crate) struct CellTable {
-    /// One line an occupied segment in ascending order, and the number of photons after the last.
-    starts: Vec<u32>,
-    directory: Directory,
-}
-
-#[derive(Debug)]
-enum Directory {
-    /// The line of every segment.
-    Dense(Vec<u32>),
-    /// Open addressing with linear probing over a power of two of slots, at most half of them taken.
-    Hashed { slots: Vec<(u64, u32)>, shift: u32 },
-}
-
-/// Fibonacci hashing: the high bits of the product with 2^64 over the golden ratio.
-#[inline]
-fn hash(segment: u64, shift: u32) -> usize {
-    (segment.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> shift) as usize
+    entries: Vec<Entry>,
+    shift: u32,
+    cell_count: usize,
+    photon_count: usize,
 }
 
 impl CellTable {
-    /// The table of photons whose cells are `cells`, ascending; the grid has `segment_count` segments.
-    pub(crate) fn new(cells: impl ExactSizeIterator<Item = u64>, segment_count: u64) -> Self {
-        let photons = cells.len();
-        let mut starts: Vec<u32> = Vec::new();
-        let mut segments: Vec<u64> = Vec::new();
-        for (slot, cell) in cells.enumerate() {
-            let segment = cell / u64::from(SEGMENT_CELLS);
-            if segments.last() != Some(&segment) {
-                starts.resize(segments.len() * WIDTH, slot as u32);
-                segments.push(segment);
-            }
-            // Cells up to this one begin no later than here.
-            let line = (segments.len() - 1) * WIDTH;
-            let end = line + (cell % u64::from(SEGMENT_CELLS)) as usize + 1;
-            if starts.len() < end {
-                starts.resize(end, slot as u32);
+    /// The table of photons with these Morton keys, ascending.
+    pub(crate) fn new(cells: &Cells, keys: impl ExactSizeIterator<Item = u64> + Clone) -> Self {
+        let photon_count = keys.len();
+        let mut last = None;
+        let is_first = |key: u64| !last.replace(key).is_some_and(|last| Cells::same_cell(last, key));
+        let cell_count = keys.clone().map(is_first).filter(|first| *first).count();
+        let bits = (cell_count * 2).next_power_of_two().ilog2().max(1);
+        let mut table = Self { entries: vec![FREE; 1 << bits], shift: 64 - bits, cell_count, photon_count };
+        let mut run: Option<(u64, u32)> = None;
+        for (slot, key) in (0u32..).zip(keys) {
+            match run {
+                Some((of, _)) if Cells::same_cell(of, key) => {}
+                _ => {
+                    if let Some((of, first)) = run {
+                        table.insert(Entry { cell: cells.cell_of_key(of), first, end: slot });
+                    }
+                    run = Some((key, slot));
+                }
             }
         }
-        starts.resize(segments.len() * WIDTH + 1, photons as u32);
-        let directory = if segment_count <= (photons as u64).max(1024) {
-            let mut lines = vec![NONE; segment_count as usize];
-            for (line, segment) in (0u32..).zip(&segments) {
-                lines[*segment as usize] = line;
-            }
-            Directory::Dense(lines)
-        } else {
-            let bits = (segments.len() * 2).next_power_of_two().ilog2().max(1);
-            let mut slots = vec![(0, NONE); 1 << bits];
-            let shift = 64 - bits;
-            for (line, segment) in (0u32..).zip(&segments) {
-                let mut at = hash(*segment, shift);
-                while slots[at].1 != NONE {
-                    at = (at + 1) & (slots.len() - 1);
-                }
-                slots[at] = (*segment, line);
-            }
-            Directory::Hashed { slots, shift }
-        };
-        Self { starts, directory }
+        if let Some((of, first)) = run {
+            table.insert(Entry { cell: cells.cell_of_key(of), first, end: photon_count as u32 });
+        }
+        table
     }
 
-    /// Occupied segments.
-    pub(crate) fn len(&self) -> usize {
-        self.starts.len() / WIDTH
+    /// Fibonacci hashing: the high bits of the product with 2^64 over the golden ratio.
+    #[inline]
+    fn home(&self, cell: u64) -> usize {
+        (cell.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> self.shift) as usize
+    }
+
+    fn insert(&mut self, entry: Entry) {
+        let mut at = self.home(entry.cell);
+        while self.entries[at].cell != FREE.cell {
+            at = (at + 1) & (self.entries.len() - 1);
+        }
+        self.entries[at] = entry;
+    }
+
+    /// Slots of a cell's photons; empty where there are none.
+    #[inline]
+    fn slots(&self, cell: u64) -> Range<u32> {
+        let mut at = self.home(cell);
+        loop {
+            let entry = self.entries[at];
+            if entry.cell == cell || entry.cell == FREE.cell {
+                return entry.first..entry.end;
+            }
+            at = (at + 1) & (self.entries.len() - 1);
+        }
+    }
+
+    /// Photons of an occupied cell, on the mean.
+    pub(crate) fn photons_a_cell(&self) -> f32 {
+        self.photon_count as f32 / self.cell_count.max(1) as f32
     }
 
     /// Memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        let directory = match &self.directory {
-            Directory::Dense(lines) => lines.capacity() * size_of::<u32>(),
-            Directory::Hashed { slots, .. } => slots.capacity() * size_of::<(u64, u32)>(),
-        };
-        self.starts.capacity() * size_of::<u32>() + directory
+        self.entries.capacity() * size_of::<Entry>()
     }
 
+    /// Appends the slots of the occupied cells of a box; `false`, with nothing appended, where the box has more cells
+    /// than are occupied.
     #[inline]
-    fn line(&self, segment: u64) -> Option<usize> {
-        match &self.directory {
-            Directory::Dense(lines) => match lines[segment as usize] {
-                NONE => None,
-                line => Some(line as usize),
-            },
-            Directory::Hashed { slots, shift } => {
-                let mut at = hash(segment, *shift);
-                loop {
-                    match slots[at] {
-                        (_, NONE) => return None,
-                        (s, line) if s == segment => return Some(line as usize),
-                        _ => at = (at + 1) & (slots.len() - 1),
+    pub(crate) fn collect(&self, cells: &Cells, [x, y, z]: CellBox, slots: &mut Vec<Range<u32>>) -> bool {
+        let length = |[first, last]: [u32; 2]| f64::from(last - first + 1);
+        let count = length(x) * length(y) * length(z);
+        if count > 8.0 && count > self.cell_count as f64 {
+            return false;
+        }
+        for z in z[0]..=z[1] {
+            for y in y[0]..=y[1] {
+                for x in x[0]..=x[1] {
+                    let range = self.slots(cells.cell([x, y, z]));
+                    if !range.is_empty() {
+                        slots.push(range);
                     }
                 }
             }
         }
-    }
-
-    /// Photon slots of cells `first..=last` of a segment; empty where there are none.
-    #[inline]
-    pub(crate) fn slots(&self, segment: u64, first: u32, last: u32) -> Range<u32> {
-        match self.line(segment) {
-            None => 0..0,
-            Some(line) => {
-                let at = line * WIDTH;
-                self.starts[at + first as usize]..self.starts[at + last as usize + 1]
-            }
-        }
+        true
     }
 }

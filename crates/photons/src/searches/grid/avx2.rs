@@ -1,0 +1,255 @@
+//! The kernels with 256-bit vectors: two vectors a block.
+//!
+//! No fused multiply-add: every operation rounds as the scalar kernel's does. Masks are vectors of all ones or zeros.
+
+use super::blocks::{Block, Boxes, LANES};
+use super::kernels::{
+    CONE, CONSTANT, Candidates, EPANECHNIKOV, GAUSSIAN, NormalMemo, VectorKernels, kernel_index, key,
+};
+use crate::Gathered;
+use crate::flux::SCALE_BIAS;
+use crate::inclusion::PreparedQuery;
+use crate::kernel::GAUSSIAN as GAUSSIAN_COEFFICIENTS;
+use crate::photon::{DEPTH_MASK, NORMAL_MASK, NORMAL_MAX};
+use photinus_geometry::Vec3;
+use std::arch::x86_64::*;
+use std::ops::Range;
+
+/// Lanes of a vector.
+const HALF: usize = 8;
+
+/// These kernels, where the processor has what they need.
+pub(crate) fn kernels() -> Option<VectorKernels> {
+    is_x86_feature_detected!("avx2").then_some(VectorKernels { name: "avx2", cull, gather, scan })
+}
+
+fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+    // SAFETY: `kernels` hands this function out only where the processor has AVX2.
+    unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
+}
+
+fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut NormalMemo) -> Gathered {
+    // SAFETY: as above.
+    unsafe {
+        match kernel_index(query.kernel.kernel) {
+            CONSTANT => gather_kernel::<CONSTANT>(blocks, hits, query, memo),
+            CONE => gather_kernel::<CONE>(blocks, hits, query, memo),
+            EPANECHNIKOV => gather_kernel::<EPANECHNIKOV>(blocks, hits, query, memo),
+            _ => gather_kernel::<GAUSSIAN>(blocks, hits, query, memo),
+        }
+    }
+}
+
+fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+    // SAFETY: as above.
+    unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
+}
+
+/// Half of a block's field as a vector.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn floats(lanes: &[f32; LANES], half: usize) -> __m256 {
+    let lanes = &lanes[half * HALF..][..HALF];
+    // SAFETY: the slice covers the 32 bytes read; no alignment is asked for.
+    unsafe { _mm256_loadu_ps(lanes.as_ptr()) }
+}
+
+/// Half of a block's field as a vector.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn words(lanes: &[u32; LANES], half: usize) -> __m256i {
+    let lanes = &lanes[half * HALF..][..HALF];
+    // SAFETY: the slice covers the 32 bytes read; no alignment is asked for.
+    unsafe { _mm256_loadu_si256(lanes.as_ptr().cast()) }
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn splat(position: Vec3) -> [__m256; 3] {
+    [_mm256_set1_ps(position.x), _mm256_set1_ps(position.y), _mm256_set1_ps(position.z)]
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn dot(a: [__m256; 3], b: [__m256; 3]) -> __m256 {
+    let xy = _mm256_add_ps(_mm256_mul_ps(a[0], b[0]), _mm256_mul_ps(a[1], b[1]));
+    _mm256_add_ps(xy, _mm256_mul_ps(a[2], b[2]))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn distances_sq(block: &Block, half: usize, position: [__m256; 3]) -> __m256 {
+    let d = [
+        _mm256_sub_ps(floats(&block.x, half), position[0]),
+        _mm256_sub_ps(floats(&block.y, half), position[1]),
+        _mm256_sub_ps(floats(&block.z, half), position[2]),
+    ];
+    dot(d, d)
+}
+
+/// Lanes whose normal is within 60 degrees of `normal`.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn normals_within_60(surface: __m256i, normal: [__m256; 3]) -> __m256 {
+    let zero = _mm256_setzero_ps();
+    let sign_bit = _mm256_set1_ps(-0.0);
+    let x = _mm256_cvtepi32_ps(_mm256_srai_epi32::<20>(_mm256_slli_epi32::<20>(surface)));
+    let y = _mm256_cvtepi32_ps(_mm256_srai_epi32::<20>(_mm256_slli_epi32::<8>(surface)));
+    let abs = |v: __m256| _mm256_andnot_ps(sign_bit, v);
+    let z = _mm256_sub_ps(_mm256_sub_ps(_mm256_set1_ps(NORMAL_MAX as f32), abs(x)), abs(y));
+    let fold = abs(_mm256_max_ps(_mm256_sub_ps(zero, z), zero));
+    let signed = |v: __m256| _mm256_or_ps(fold, _mm256_and_ps(v, sign_bit));
+    let v = [_mm256_sub_ps(x, signed(x)), _mm256_sub_ps(y, signed(y)), z];
+    let cos = dot(v, normal);
+    let bound = _mm256_mul_ps(_mm256_set1_ps(0.25), dot(v, v));
+    let front = _mm256_cmp_ps::<_CMP_GT_OQ>(cos, zero);
+    _mm256_and_ps(front, _mm256_cmp_ps::<_CMP_GE_OQ>(_mm256_mul_ps(cos, cos), bound))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn weights<const KERNEL: u8>(d2: __m256, inv_r2: __m256, inv_k: __m256) -> __m256 {
+    let one = _mm256_set1_ps(1.0);
+    // The second operand where the first is NaN.
+    let u = _mm256_min_ps(_mm256_mul_ps(d2, inv_r2), one);
+    match KERNEL {
+        CONSTANT => one,
+        CONE => _mm256_sub_ps(one, _mm256_mul_ps(_mm256_sqrt_ps(u), inv_k)),
+        EPANECHNIKOV => _mm256_sub_ps(one, u),
+        _ => {
+            let [rest @ .., last] = GAUSSIAN_COEFFICIENTS;
+            rest.iter()
+                .rev()
+                .fold(_mm256_set1_ps(last), |sum, c| _mm256_add_ps(_mm256_mul_ps(sum, u), _mm256_set1_ps(*c)))
+        }
+    }
+}
+
+/// The sixteen lanes in the fixed tree of the scalar kernel.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn tree_sum([low, high]: [__m256; 2]) -> f32 {
+    let v = _mm256_add_ps(low, high);
+    let v = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps::<1>(v));
+    let v = _mm_add_ps(v, _mm_movehl_ps(v, v));
+    _mm_cvtss_f32(_mm_add_ss(v, _mm_shuffle_ps::<1>(v, v)))
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+    let position = splat(position);
+    let r2 = _mm256_set1_ps(r2);
+    let zero = _mm256_setzero_ps();
+    for range in ranges {
+        for first in range.clone().step_by(HALF) {
+            let side = |side: usize| {
+                let lanes = &boxes.bounds[side][first as usize..][..HALF];
+                // SAFETY: the slice covers the 32 bytes read.
+                unsafe { _mm256_loadu_ps(lanes.as_ptr()) }
+            };
+            let axis = |axis: usize| {
+                let (min, max) = (side(axis), side(axis + 3));
+                let outside = _mm256_max_ps(_mm256_sub_ps(min, position[axis]), _mm256_sub_ps(position[axis], max));
+                _mm256_max_ps(outside, zero)
+            };
+            let d = [axis(0), axis(1), axis(2)];
+            let near = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(dot(d, d), r2)) as u32;
+            let mut near = near & ((1u32 << (range.end - first).min(HALF as u32)) - 1);
+            while near != 0 {
+                hits.push(first + near.trailing_zeros());
+                near &= near - 1;
+            }
+        }
+    }
+}
+
+#[target_feature(enable = "avx2,popcnt")]
+fn gather_kernel<const KERNEL: u8>(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    memo: &mut NormalMemo,
+) -> Gathered {
+    memo.turn_to(query);
+    let position = splat(query.position);
+    let normal = splat(query.normal);
+    let r2 = _mm256_set1_ps(query.r2);
+    let inv_r2 = _mm256_set1_ps(query.kernel.inv_r2);
+    let inv_k = _mm256_set1_ps(query.kernel.inv_k);
+    let max_depth = _mm256_set1_epi32(query.max_depth as i32);
+    let byte = _mm256_set1_epi32(255);
+    let mut sums = [[_mm256_setzero_ps(); 2]; 3];
+    let mut count = 0;
+    for block in hits {
+        let block = &blocks[*block as usize];
+        for half in 0..2 {
+            let d2 = distances_sq(block, half, position);
+            let near = _mm256_cmp_ps::<_CMP_LE_OQ>(d2, r2);
+            if _mm256_movemask_ps(near) == 0 {
+                continue;
+            }
+            let surface = words(&block.surface, half);
+            let depth = _mm256_and_si256(surface, _mm256_set1_epi32(DEPTH_MASK as i32));
+            let too_deep = _mm256_castsi256_ps(_mm256_cmpgt_epi32(depth, max_depth));
+            let mut hit = _mm256_andnot_ps(too_deep, near);
+            let code = _mm256_and_si256(surface, _mm256_set1_epi32(NORMAL_MASK as i32));
+            let known = _mm256_cmpeq_epi32(code, _mm256_set1_epi32(memo.word as i32));
+            let other = _mm256_movemask_ps(_mm256_andnot_ps(_mm256_castsi256_ps(known), hit));
+            if other != 0 || !memo.passes {
+                hit = _mm256_and_ps(hit, normals_within_60(surface, normal));
+                let pass = _mm256_movemask_ps(hit) & other;
+                if pass != 0 {
+                    memo.learn(block.surface[half * HALF + pass.trailing_zeros() as usize]);
+                }
+            }
+            let flux = words(&block.flux, half);
+            let scale = _mm256_add_epi32(
+                _mm256_slli_epi32::<22>(_mm256_srli_epi32::<24>(flux)),
+                _mm256_set1_epi32((SCALE_BIAS << 23) as i32),
+            );
+            let weight = _mm256_mul_ps(_mm256_castsi256_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
+            let mantissas = [
+                _mm256_and_si256(flux, byte),
+                _mm256_and_si256(_mm256_srli_epi32::<8>(flux), byte),
+                _mm256_and_si256(_mm256_srli_epi32::<16>(flux), byte),
+            ];
+            for (sum, mantissa) in sums.iter_mut().zip(mantissas) {
+                // Sums are never -0, so that adding +0 in the other lanes leaves them as they are.
+                let term = _mm256_and_ps(hit, _mm256_mul_ps(_mm256_cvtepi32_ps(mantissa), weight));
+                sum[half] = _mm256_add_ps(sum[half], term);
+            }
+            count += _mm256_movemask_ps(hit).count_ones();
+        }
+    }
+    Gathered { flux: Vec3::new(tree_sum(sums[0]), tree_sum(sums[1]), tree_sum(sums[2])), count }
+}
+
+#[target_feature(enable = "avx2,bmi1")]
+fn scan_blocks(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+    let position = splat(position);
+    let mut limit = r2;
+    for &block in hits {
+        let photons = &blocks[block as usize];
+        let d2 = [0, 1].map(|half| distances_sq(photons, half, position));
+        let near = d2.map(|d2| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(d2, _mm256_set1_ps(limit))) as u32);
+        let mut near = near[0] | near[1] << HALF;
+        if near == 0 {
+            continue;
+        }
+        let mut lanes = [0f32; LANES];
+        // SAFETY: each store writes 32 bytes of the 64 of `lanes`.
+        unsafe {
+            _mm256_storeu_ps(lanes.as_mut_ptr(), d2[0]);
+            _mm256_storeu_ps(lanes.as_mut_ptr().add(HALF), d2[1]);
+        }
+        let free = candidates.free(LANES);
+        let mut count = 0;
+        while near != 0 {
+            let lane = near.trailing_zeros() as usize;
+            free[count] = key(lanes[lane], ids[block as usize * LANES + lane]);
+            count += 1;
+            near &= near - 1;
+        }
+        limit = candidates.push(count).unwrap_or(limit);
+    }
+}

@@ -1,0 +1,256 @@
+//! The kernels with 512-bit vectors: one block a vector.
+//!
+//! No fused multiply-add: every operation rounds as the scalar kernel's does.
+
+use super::blocks::{Block, Boxes, LANES};
+use super::kernels::{CONE, CONSTANT, Candidates, EPANECHNIKOV, GAUSSIAN, NormalMemo, VectorKernels, kernel_index};
+use crate::Gathered;
+use crate::flux::SCALE_BIAS;
+use crate::inclusion::PreparedQuery;
+use crate::kernel::GAUSSIAN as GAUSSIAN_COEFFICIENTS;
+use crate::photon::{DEPTH_MASK, NORMAL_MASK, NORMAL_MAX};
+use photinus_geometry::Vec3;
+use std::arch::x86_64::*;
+use std::ops::Range;
+
+/// These kernels, where the processor has what they need.
+pub(crate) fn kernels() -> Option<VectorKernels> {
+    is_x86_feature_detected!("avx512f").then_some(VectorKernels { name: "avx512", cull, gather, scan })
+}
+
+fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+    // SAFETY: `kernels` hands this function out only where the processor has AVX-512F.
+    unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
+}
+
+fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut NormalMemo) -> Gathered {
+    // SAFETY: as above.
+    unsafe {
+        match kernel_index(query.kernel.kernel) {
+            CONSTANT => gather_kernel::<CONSTANT>(blocks, hits, query, memo),
+            CONE => gather_kernel::<CONE>(blocks, hits, query, memo),
+            EPANECHNIKOV => gather_kernel::<EPANECHNIKOV>(blocks, hits, query, memo),
+            _ => gather_kernel::<GAUSSIAN>(blocks, hits, query, memo),
+        }
+    }
+}
+
+fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+    // SAFETY: as above.
+    unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
+}
+
+/// A block's field as a vector.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn floats(lanes: &[f32; LANES]) -> __m512 {
+    // SAFETY: the reference covers the 64 bytes read; no alignment is asked for.
+    unsafe { _mm512_loadu_ps(lanes.as_ptr()) }
+}
+
+/// A block's field as a vector.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn words(lanes: &[u32; LANES]) -> __m512i {
+    // SAFETY: the reference covers the 64 bytes read; no alignment is asked for.
+    unsafe { _mm512_loadu_si512(lanes.as_ptr().cast()) }
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn splat(position: Vec3) -> [__m512; 3] {
+    [_mm512_set1_ps(position.x), _mm512_set1_ps(position.y), _mm512_set1_ps(position.z)]
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn dot(a: [__m512; 3], b: [__m512; 3]) -> __m512 {
+    let xy = _mm512_add_ps(_mm512_mul_ps(a[0], b[0]), _mm512_mul_ps(a[1], b[1]));
+    _mm512_add_ps(xy, _mm512_mul_ps(a[2], b[2]))
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn distances_sq(block: &Block, position: [__m512; 3]) -> __m512 {
+    let d = [
+        _mm512_sub_ps(floats(&block.x), position[0]),
+        _mm512_sub_ps(floats(&block.y), position[1]),
+        _mm512_sub_ps(floats(&block.z), position[2]),
+    ];
+    dot(d, d)
+}
+
+/// Lanes whose normal is within 60 degrees of `normal`.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn normals_within_60(surface: __m512i, normal: [__m512; 3]) -> __mmask16 {
+    let zero = _mm512_setzero_ps();
+    let sign_bit = _mm512_castsi512_ps(_mm512_set1_epi32(i32::MIN));
+    let (sign_bits, x, y) = (
+        _mm512_castps_si512(sign_bit),
+        _mm512_cvtepi32_ps(_mm512_srai_epi32::<20>(_mm512_slli_epi32::<20>(surface))),
+        _mm512_cvtepi32_ps(_mm512_srai_epi32::<20>(_mm512_slli_epi32::<8>(surface))),
+    );
+    let z = _mm512_sub_ps(_mm512_sub_ps(_mm512_set1_ps(NORMAL_MAX as f32), _mm512_abs_ps(x)), _mm512_abs_ps(y));
+    let fold = _mm512_castps_si512(_mm512_max_ps(_mm512_sub_ps(zero, z), zero));
+    // fold with the sign of v: bits of the second where the first is set, of the third elsewhere.
+    let signed =
+        |v: __m512| _mm512_castsi512_ps(_mm512_ternarylogic_epi32::<0xCA>(sign_bits, _mm512_castps_si512(v), fold));
+    let v = [_mm512_sub_ps(x, signed(x)), _mm512_sub_ps(y, signed(y)), z];
+    let cos = dot(v, normal);
+    let bound = _mm512_mul_ps(_mm512_set1_ps(0.25), dot(v, v));
+    let front = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(cos, zero);
+    _mm512_mask_cmp_ps_mask::<_CMP_GE_OQ>(front, _mm512_mul_ps(cos, cos), bound)
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn weights<const KERNEL: u8>(d2: __m512, inv_r2: __m512, inv_k: __m512) -> __m512 {
+    let one = _mm512_set1_ps(1.0);
+    // The second operand where the first is NaN.
+    let u = _mm512_min_ps(_mm512_mul_ps(d2, inv_r2), one);
+    match KERNEL {
+        CONSTANT => one,
+        CONE => _mm512_sub_ps(one, _mm512_mul_ps(_mm512_sqrt_ps(u), inv_k)),
+        EPANECHNIKOV => _mm512_sub_ps(one, u),
+        _ => {
+            let [rest @ .., last] = GAUSSIAN_COEFFICIENTS;
+            rest.iter()
+                .rev()
+                .fold(_mm512_set1_ps(last), |sum, c| _mm512_add_ps(_mm512_mul_ps(sum, u), _mm512_set1_ps(*c)))
+        }
+    }
+}
+
+/// The sixteen lanes in the fixed tree of the scalar kernel.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn tree_sum(v: __m512) -> f32 {
+    let v = _mm512_add_ps(v, _mm512_shuffle_f32x4::<0b01_00_11_10>(v, v));
+    let v = _mm512_add_ps(v, _mm512_shuffle_f32x4::<0b10_11_00_01>(v, v));
+    let v = _mm512_castps512_ps128(v);
+    let v = _mm_add_ps(v, _mm_movehl_ps(v, v));
+    _mm_cvtss_f32(_mm_add_ss(v, _mm_shuffle_ps::<1>(v, v)))
+}
+
+#[target_feature(enable = "avx512f,popcnt")]
+fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+    let position = splat(position);
+    let r2 = _mm512_set1_ps(r2);
+    let zero = _mm512_setzero_ps();
+    let ascending = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    for range in ranges {
+        for first in range.clone().step_by(LANES) {
+            let side = |side: usize| {
+                let lanes = &boxes.bounds[side][first as usize..][..LANES];
+                // SAFETY: the slice covers the 64 bytes read.
+                unsafe { _mm512_loadu_ps(lanes.as_ptr()) }
+            };
+            let axis = |axis: usize| {
+                let (min, max) = (side(axis), side(axis + 3));
+                let outside = _mm512_max_ps(_mm512_sub_ps(min, position[axis]), _mm512_sub_ps(position[axis], max));
+                _mm512_max_ps(outside, zero)
+            };
+            let d = [axis(0), axis(1), axis(2)];
+            let in_range = _mm512_cmplt_epu32_mask(ascending, _mm512_set1_epi32((range.end - first) as i32));
+            let near = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(in_range, dot(d, d), r2);
+            let ids = _mm512_add_epi32(ascending, _mm512_set1_epi32(first as i32));
+            hits.reserve(LANES);
+            // SAFETY: there is room for sixteen more, of which the first ones, as many as `near` has bits, are kept.
+            unsafe {
+                let end = hits.as_mut_ptr().add(hits.len());
+                _mm512_storeu_si512(end.cast(), _mm512_maskz_compress_epi32(near, ids));
+                hits.set_len(hits.len() + near.count_ones() as usize);
+            }
+        }
+    }
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn gather_kernel<const KERNEL: u8>(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    memo: &mut NormalMemo,
+) -> Gathered {
+    memo.turn_to(query);
+    let position = splat(query.position);
+    let normal = splat(query.normal);
+    let r2 = _mm512_set1_ps(query.r2);
+    let inv_r2 = _mm512_set1_ps(query.kernel.inv_r2);
+    let inv_k = _mm512_set1_ps(query.kernel.inv_k);
+    let max_depth = _mm512_set1_epi32(query.max_depth as i32);
+    let byte = _mm512_set1_epi32(255);
+    let mut known = _mm512_set1_epi32(memo.word as i32);
+    let mut sums = [_mm512_setzero_ps(); 3];
+    let mut count = 0;
+    for block in hits {
+        let block = &blocks[*block as usize];
+        let d2 = distances_sq(block, position);
+        let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, r2);
+        let surface = words(&block.surface);
+        let depth = _mm512_and_si512(surface, _mm512_set1_epi32(DEPTH_MASK as i32));
+        let mut hit = _mm512_mask_cmple_epu32_mask(near, depth, max_depth);
+        let difference = _mm512_xor_si512(surface, known);
+        let other = _mm512_mask_test_epi32_mask(hit, difference, _mm512_set1_epi32(NORMAL_MASK as i32))
+            | if memo.passes { 0 } else { hit };
+        if other != 0 {
+            let pass = normals_within_60(surface, normal) & other;
+            hit &= !other | pass;
+            if pass != 0 {
+                memo.learn(block.surface[pass.trailing_zeros() as usize]);
+                known = _mm512_set1_epi32(memo.word as i32);
+            }
+        }
+        let flux = words(&block.flux);
+        let scale = _mm512_add_epi32(
+            _mm512_slli_epi32::<22>(_mm512_srli_epi32::<24>(flux)),
+            _mm512_set1_epi32((SCALE_BIAS << 23) as i32),
+        );
+        let weight = _mm512_mul_ps(_mm512_castsi512_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
+        let mantissas = [
+            _mm512_and_si512(flux, byte),
+            _mm512_and_si512(_mm512_srli_epi32::<8>(flux), byte),
+            _mm512_and_si512(_mm512_srli_epi32::<16>(flux), byte),
+        ];
+        for (sum, mantissa) in sums.iter_mut().zip(mantissas) {
+            *sum = _mm512_mask_add_ps(*sum, hit, *sum, _mm512_mul_ps(_mm512_cvtepi32_ps(mantissa), weight));
+        }
+        count += hit.count_ones();
+    }
+    Gathered { flux: Vec3::new(tree_sum(sums[0]), tree_sum(sums[1]), tree_sum(sums[2])), count }
+}
+
+#[target_feature(enable = "avx512f,popcnt")]
+fn scan_blocks(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+    let position = splat(position);
+    let mut limit = _mm512_set1_ps(r2);
+    for &block in hits {
+        let d2 = distances_sq(&blocks[block as usize], position);
+        let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, limit);
+        if near == 0 {
+            continue;
+        }
+        let first = block as usize * LANES;
+        let ids: &[u32; LANES] = ids[first..first + LANES].try_into().expect("ids are padded to whole blocks");
+        let (d2, ids) = (_mm512_castps_si512(d2), words(ids));
+        // Keys of 64 bits: the distance's bits above the id.
+        let key = |d2: __m256i, id: __m256i| {
+            _mm512_or_si512(_mm512_slli_epi64::<32>(_mm512_cvtepu32_epi64(d2)), _mm512_cvtepu32_epi64(id))
+        };
+        let low = key(_mm512_castsi512_si256(d2), _mm512_castsi512_si256(ids));
+        let high = key(_mm512_extracti64x4_epi64::<1>(d2), _mm512_extracti64x4_epi64::<1>(ids));
+        let (near_low, near_high) = (near as u8, (near >> 8) as u8);
+        let free = candidates.free(LANES);
+        let (first_count, second_count) = (near_low.count_ones() as usize, near_high.count_ones() as usize);
+        // SAFETY: `free` holds at least 16 keys: the second store begins at most 8 keys in.
+        unsafe {
+            _mm512_storeu_si512(free.as_mut_ptr().cast(), _mm512_maskz_compress_epi64(near_low, low));
+            let second = free.as_mut_ptr().add(first_count);
+            _mm512_storeu_si512(second.cast(), _mm512_maskz_compress_epi64(near_high, high));
+        }
+        if let Some(closer) = candidates.push(first_count + second_count) {
+            limit = _mm512_set1_ps(closer);
+        }
+    }
+}

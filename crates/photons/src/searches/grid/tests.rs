@@ -1,0 +1,78 @@
+//! Every set of vector kernels against the scalar one, bit for bit, and answers that must not depend on the batch.
+
+use super::*;
+use support::{SEED, queries, sets};
+
+#[path = "../../../tests/support/mod.rs"]
+mod support;
+
+const KERNELS: [Kernel; 4] = [Kernel::Constant, Kernel::Cone { k: 1.1 }, Kernel::Epanechnikov, Kernel::Gaussian];
+
+fn bits(gathered: &[Gathered]) -> Vec<[u32; 4]> {
+    gathered.iter().map(|g| [g.flux.x.to_bits(), g.flux.y.to_bits(), g.flux.z.to_bits(), g.count]).collect()
+}
+
+#[test]
+fn vector_kernels_equal_the_scalar_kernel_bit_for_bit() {
+    let kernels = kernels::available();
+    println!("seed {SEED}, kernels {:?}", kernels.iter().map(|k| k.name).collect::<Vec<_>>());
+    for set in sets() {
+        let queries = queries(&set, 160);
+        let grid = |kernels| Grid::with_kernels(&set.photons, &BuildOptions { radius_hint: set.radius }, kernels);
+        let scalar = grid(scalar::KERNELS);
+        for &kernels in kernels {
+            let vector = grid(kernels);
+            let context = format!("{} on '{}'", kernels.name, set.name);
+            for kernel in KERNELS {
+                let gather = |grid: &Grid| {
+                    let mut out = vec![Gathered::default(); queries.len()];
+                    grid.gather(&queries, kernel, &mut out);
+                    bits(&out)
+                };
+                assert_eq!(gather(&vector), gather(&scalar), "{context}, {kernel:?}");
+            }
+            let (mut expected, mut found) = (Vec::new(), Vec::new());
+            for query in &queries {
+                scalar.within_radius(query.position, query.radius, &mut expected);
+                vector.within_radius(query.position, query.radius, &mut found);
+                assert_eq!(found, expected, "{context}: within, {query:?}");
+                for k in [1, 50, 300] {
+                    scalar.nearest(query.position, k, query.radius * 2.0, &mut expected);
+                    vector.nearest(query.position, k, query.radius * 2.0, &mut found);
+                    assert_eq!(found, expected, "{context}: {k} nearest, {query:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn results_depend_on_neither_batch_nor_threads() {
+    println!("seed {SEED}");
+    for set in sets().iter().filter(|set| ["box", "sphere", "room on a plane"].contains(&set.name)) {
+        let mut queries = queries(set, 3000);
+        let gather = |threads: usize, queries: &[GatherQuery]| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| {
+                let grid = Grid::new(&set.photons, &BuildOptions { radius_hint: set.radius });
+                let mut out = vec![Gathered::default(); queries.len()];
+                grid.gather(queries, Kernel::Epanechnikov, &mut out);
+                bits(&out)
+            })
+        };
+        let expected = gather(1, &queries);
+        for threads in [2, 7] {
+            assert_eq!(gather(threads, &queries), expected, "{} threads on '{}'", threads, set.name);
+        }
+        let grid = Grid::new(&set.photons, &BuildOptions { radius_hint: set.radius });
+        for (query, expected) in queries.iter().zip(&expected).take(300) {
+            let mut out = [Gathered::default()];
+            grid.gather(std::slice::from_ref(query), Kernel::Epanechnikov, &mut out);
+            assert_eq!(bits(&out), [*expected], "alone on '{}': {query:?}", set.name);
+        }
+        queries.reverse();
+        let mut reversed = gather(2, &queries);
+        reversed.reverse();
+        assert_eq!(reversed, expected, "reversed on '{}'", set.name);
+    }
+}
