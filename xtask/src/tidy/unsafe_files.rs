@@ -12,7 +12,13 @@ struct Kernel {
     twin_test: (&'static str, &'static str),
 }
 
-const KERNELS: &[Kernel] = &[];
+const GRID_TWIN_TEST: (&str, &str) =
+    ("crates/photons/src/searches/grid/tests.rs", "vector_kernels_equal_the_scalar_kernel_bit_for_bit");
+
+const KERNELS: &[Kernel] = &[
+    Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },
+    Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },
+];
 
 /// Checks the list against the sources, both ways.
 pub fn check(tree: &Tree) -> Vec<Finding> {
