@@ -2,6 +2,7 @@
 
 use super::lobe::{Lobe, LobeKind};
 use super::materials::Materials;
+use super::microfacet::reflect;
 use super::scattering::{Bsdf, MAX_FRAMES, MAX_LOBES, ShadingFrame};
 use super::{GATHER_ALPHA, LobeSet, SurfaceModel};
 use crate::SurfacePoint;
@@ -56,6 +57,7 @@ impl<'a> Builder<'a> {
             wo,
             ng,
             ns,
+            shading_normal: ns,
             frames: [frame; MAX_FRAMES],
             frame_count: 1,
             lobes: [Lobe {
@@ -118,10 +120,13 @@ impl<'a> Builder<'a> {
         self.materials.model()
     }
 
-    /// A factor on light: within 0..1, 0 where it is not a number.
-    pub fn factor(&self, input: ColorInput) -> Vec3 {
+    /// A factor on light, 0 where it is negative or not a number. It may exceed 1 as far as the place's share makes up for
+    /// it (blends that stand for sums), so that no lobe sends out more than it gets.
+    pub fn factor(&self, place: Place, input: ColorInput) -> Vec3 {
         let c = self.materials.textures().color(input, &self.lookup);
-        Vec3::new(unit(c.x), unit(c.y), unit(c.z))
+        let most = 1.0 / place.share;
+        let sane = |x: f32| if x > 0.0 { x.min(most) } else { 0.0 };
+        Vec3::new(sane(c.x), sane(c.y), sane(c.z))
     }
 
     /// A colour without upper bound (indices of refraction): 0 where it is negative or not finite.
@@ -160,9 +165,33 @@ impl<'a> Builder<'a> {
         // Estevez et al. 2019: an eighth of the squared slope is the roughness of the bumps, at most 1.
         let bump_alpha_sq = (0.125 * tan_sq).min(1.0);
         let frame = ShadingFrame { axes, wo: local_wo(&axes, self.bsdf.wo), bump_alpha_sq };
+        self.bsdf.shading_normal = axes.n;
+        self.add_frame(place, frame)
+    }
+
+    /// The same place for mirrors and microfacets: where the normal would mirror `wo` to below the geometric surface,
+    /// which leaves black edges on coarse meshes, the normal that mirrors it just above takes over.
+    pub fn specular(&mut self, place: Place) -> Place {
+        let (ng, wo) = (self.bsdf.ng, self.bsdf.wo);
+        let frame = self.bsdf.frames[usize::from(place.frame)];
+        let mirrored = reflect(wo, frame.axes.n);
+        let least = LEAST_COSINE.min(0.5 * ng.dot(wo));
+        let cos = ng.dot(mirrored);
+        if cos >= least {
+            return place;
+        }
+        let lifted = mirrored + ng * (least - cos);
+        let n = (wo + lifted.normalize_or(ng)).normalize_or(ng);
+        let axes = sided_frame(n, frame.axes.s, self.side);
+        self.add_frame(place, ShadingFrame { axes, wo: local_wo(&axes, wo), ..frame })
+    }
+
+    /// The place with a frame of its own, or with an equal one that is there; the last one takes all where they run out.
+    fn add_frame(&mut self, place: Place, frame: ShadingFrame) -> Place {
         let count = usize::from(self.bsdf.frame_count);
-        let index = count.min(MAX_FRAMES - 1);
-        if count < MAX_FRAMES {
+        let known = self.bsdf.frames[..count].iter().position(|other| *other == frame);
+        let index = known.unwrap_or(count.min(MAX_FRAMES - 1));
+        if index == count {
             self.bsdf.frames[index] = frame;
             self.bsdf.frame_count += 1;
         }
@@ -195,7 +224,7 @@ impl<'a> Builder<'a> {
         if weight.max_element() <= 0.0 || !weight.is_finite() {
             return;
         }
-        let albedo = albedo.map(|a| a.clamp(Vec3::ZERO, Vec3::ONE) * place.share);
+        let albedo = albedo.map(|a| (a * place.share).clamp(Vec3::ZERO, Vec3::ONE));
         let lobe = Lobe { kind, set, weight: weight * place.share, albedo, eta, frame: place.frame };
         if self.merge(&lobe) {
             return;

@@ -1,12 +1,12 @@
 //! All materials of a scene, prepared once.
 
 use super::builder::Builder;
-use super::microfacet::{PlasticTable, SplitSumTable};
+use super::microfacet::{InterfaceTable, PlasticTable, SplitSumTable};
 use super::{Bsdf, SurfaceModel, fresnel_diffuse_reflectance};
 use crate::SurfacePoint;
 use crate::texture::{TextureLookup, Textures};
 use photinus_geometry::Vec3;
-use photinus_scene::{ColorInput, Material, MaterialId, MicrofacetModel, Scene};
+use photinus_scene::{ColorInput, Material, MaterialId, MicrofacetModel, NamedMaterial, Scene, Texture};
 
 /// All materials and textures of a scene, ready to be resolved at surface points.
 #[derive(Clone, Debug)]
@@ -15,6 +15,7 @@ pub struct Materials {
     textures: Textures,
     model: SurfaceModel,
     plastics: Vec<PlasticTable>,
+    interfaces: Vec<InterfaceTable>,
     split_sums: Vec<(MicrofacetModel, SplitSumTable)>,
     /// Relative index and mean reflectance under diffuse light from the side that it is relative to.
     diffuse_reflectances: Vec<(f32, f32)>,
@@ -26,6 +27,17 @@ struct Prepared {
     has_opacity: bool,
 }
 
+/// A table that the lobes of a material look up; indices are inside over outside.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Table {
+    /// Reflectance by Schlick's formula.
+    SplitSum(MicrofacetModel),
+    /// A coat over a diffuse base.
+    Plastic(MicrofacetModel, f32),
+    /// Reflectance and transmittance of an interface.
+    Interface(MicrofacetModel, f32),
+}
+
 /// What a material id stands for that is on no list.
 const MISSING: Material = Material::Diffuse { reflectance: ColorInput::Constant(Vec3::splat(0.5)) };
 
@@ -33,27 +45,33 @@ impl Materials {
     /// Prepares textures and the tables that the materials need. Indices out of range and materials that nest themselves
     /// become mid-grey.
     pub fn new(scene: &Scene, model: SurfaceModel) -> Self {
+        Self::from_lists(&scene.materials, &scene.textures, model)
+    }
+
+    /// The same for materials and textures without a scene around them.
+    pub fn from_lists(materials: &[NamedMaterial], textures: &[Texture], model: SurfaceModel) -> Self {
         let mut result = Self {
-            materials: Vec::with_capacity(scene.materials.len()),
-            textures: Textures::new(&scene.textures),
+            materials: Vec::with_capacity(materials.len()),
+            textures: Textures::new(textures),
             model,
             plastics: Vec::new(),
+            interfaces: Vec::new(),
             split_sums: Vec::new(),
             diffuse_reflectances: Vec::new(),
         };
-        for (i, named) in scene.materials.iter().enumerate() {
+        for (i, named) in materials.iter().enumerate() {
             let sound = named.material.nested().all(|id| (id.0 as usize) < i);
             let material = if sound { named.material.clone() } else { MISSING };
             let has_opacity = matches!(material, Material::Mask { .. } | Material::Null)
                 || material.nested().any(|id| result.materials[id.0 as usize].has_opacity);
             if model == SurfaceModel::Physical {
+                for table in super::members::tables(&material) {
+                    result.add_table(table);
+                }
                 for eta in super::members::indices(&material) {
                     if result.diffuse_reflectances.iter().all(|(known, _)| *known != eta) {
                         result.diffuse_reflectances.push((eta, fresnel_diffuse_reflectance(eta)));
                     }
-                }
-                for (facets, plastic_eta) in super::members::tables(&material) {
-                    result.add_tables(facets, plastic_eta);
                 }
             }
             result.materials.push(Prepared { material, has_opacity });
@@ -61,10 +79,17 @@ impl Materials {
         result
     }
 
-    fn add_tables(&mut self, model: MicrofacetModel, plastic_eta: Option<f32>) {
-        match plastic_eta {
-            Some(eta) if self.plastic_table(model, eta).is_none() => self.plastics.push(PlasticTable::new(model, eta)),
-            None if self.split_sum(model).is_none() => self.split_sums.push((model, SplitSumTable::new(model))),
+    fn add_table(&mut self, table: Table) {
+        match table {
+            Table::SplitSum(model) if self.split_sum(model).is_none() => {
+                self.split_sums.push((model, SplitSumTable::new(model)));
+            }
+            Table::Plastic(model, eta) if self.plastic_table(model, eta).is_none() => {
+                self.plastics.push(PlasticTable::new(model, eta));
+            }
+            Table::Interface(model, eta) if self.interface_table(model, eta).is_none() => {
+                self.interfaces.push(InterfaceTable::new(model, eta));
+            }
             _ => {}
         }
     }
@@ -72,8 +97,9 @@ impl Materials {
     /// Bytes held beyond the scene itself.
     pub fn bytes(&self) -> usize {
         let tables: usize = self.plastics.iter().map(PlasticTable::bytes).sum();
+        let interfaces: usize = self.interfaces.iter().map(InterfaceTable::bytes).sum();
         let sums: usize = self.split_sums.iter().map(|(_, table)| table.bytes()).sum();
-        self.materials.len() * size_of::<Prepared>() + self.textures.bytes() + tables + sums
+        self.materials.len() * size_of::<Prepared>() + self.textures.bytes() + tables + interfaces + sums
     }
 
     /// How faithfully surfaces are modelled.
@@ -92,6 +118,10 @@ impl Materials {
 
     pub(super) fn plastic_table(&self, model: MicrofacetModel, eta: f32) -> Option<&PlasticTable> {
         self.plastics.iter().find(|table| table.model == model && table.eta == eta)
+    }
+
+    pub(super) fn interface_table(&self, model: MicrofacetModel, eta: f32) -> Option<&InterfaceTable> {
+        self.interfaces.iter().find(|table| table.model == model && table.eta == eta)
     }
 
     pub(super) fn split_sum(&self, model: MicrofacetModel) -> Option<&SplitSumTable> {

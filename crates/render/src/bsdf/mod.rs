@@ -21,6 +21,7 @@ mod transport;
 pub use fresnel::{fresnel_conductor, fresnel_dielectric, fresnel_diffuse_reflectance};
 pub use lobe_set::LobeSet;
 pub use materials::Materials;
+pub use members::{MATERIAL_KINDS, MaterialKind, material_kind};
 pub use scattering::{Bsdf, BsdfSample, DeltaChild};
 pub use transport::{SurfaceModel, TransportMode};
 
@@ -29,3 +30,6 @@ pub const MIRROR_ALPHA: f32 = 1e-3;
 
 /// Microfacet roughness (alpha) from which photons are stored at a reflecting lobe and gathered there.
 pub const GATHER_ALPHA: f32 = 0.25;
+
+#[cfg(test)]
+mod tests;

@@ -9,16 +9,18 @@ use photinus_geometry::{Frame, Vec3};
 /// Lobes that a sum may have; what a material has beyond them is folded into a diffuse lobe of the same albedo.
 pub(super) const MAX_LOBES: usize = 8;
 
-/// Different shading normals that a sum may have (blends of bump maps); further ones share the last.
-pub(super) const MAX_FRAMES: usize = 3;
+/// Different shading normals that a sum may have (blends of bump maps, bent normals of mirrors); further ones share the
+/// last.
+pub(super) const MAX_FRAMES: usize = 4;
 
 /// Bound on the ratio of cosines by which shading normals correct photons: without one a single photon at grazing
 /// incidence on a coarse mesh could outshine an estimate. Where diffuse light meets a surface at the horizon of its
-/// geometric normal and at a shading cosine c, the bound cuts off the cosines below c / 64: c^2 / 64 of the irradiance.
-const MAX_NORMAL_CORRECTION: f32 = 64.0;
+/// geometric normal and at a shading cosine c, the bound cuts off the cosines below c / 256: about c^2 / 256 of the
+/// irradiance.
+const MAX_NORMAL_CORRECTION: f32 = 256.0;
 
 /// A shading frame on the side of `wo`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ShadingFrame {
     /// x, y and z in world space; left-handed on the back.
     pub axes: Frame,
@@ -88,6 +90,8 @@ pub struct Bsdf {
     pub(super) ng: Vec3,
     /// Shading normal before bump maps on the side of `wo`.
     pub(super) ns: Vec3,
+    /// Shading normal after the last bump map.
+    pub(super) shading_normal: Vec3,
     pub(super) frames: [ShadingFrame; MAX_FRAMES],
     pub(super) frame_count: u8,
     pub(super) lobes: [Lobe; MAX_LOBES],
@@ -112,7 +116,7 @@ impl Bsdf {
     /// Unit shading normal on the side of `wo`, bump and normal maps included.
     #[inline]
     pub fn shading_normal(&self) -> Vec3 {
-        self.frames[usize::from(self.frame_count) - 1].axes.n
+        self.shading_normal
     }
 
     /// Unit geometric normal on the side of `wo`.
@@ -305,10 +309,10 @@ impl Bsdf {
         DeltaChild { wi, weight, is_transmission, eta }
     }
 
-    /// A single direction cannot be drawn anew: where interpolated normals send it to the wrong side of the surface it
-    /// is lifted just past the horizon, instead of leaving a black edge.
+    /// A single direction cannot be drawn anew: where interpolated normals bend it to the wrong side of the surface it is
+    /// moved just past the horizon, instead of leaving a black edge.
     fn pushed_to_side(&self, wi: Vec3, sign: f32) -> Vec3 {
-        const LEAST_COSINE: f32 = 1e-3;
+        const LEAST_COSINE: f32 = 1e-4;
         let cos = self.ng.dot(wi) * sign;
         if cos >= LEAST_COSINE {
             return wi.normalize();

@@ -9,10 +9,11 @@ pub fn add(builder: &mut Builder, place: Place, eta: ColorInput, k: ColorInput, 
     if !place.front {
         return;
     }
+    let place = builder.specular(place);
     let cos = match builder.model() {
         SurfaceModel::Physical => builder.wo(place).z,
         SurfaceModel::Fixed => 1.0,
     };
     let f = fresnel_conductor(cos, builder.positive(eta), builder.positive(k));
-    builder.delta_reflection(place, builder.factor(reflectance) * f);
+    builder.delta_reflection(place, builder.factor(place, reflectance) * f);
 }

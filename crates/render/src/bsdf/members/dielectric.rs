@@ -27,6 +27,7 @@ pub fn normal_reflectance(eta: f32) -> f32 {
 }
 
 pub fn add(builder: &mut Builder, place: Place, iors: [f32; 2], reflectance: ColorInput, transmittance: ColorInput) {
+    let place = builder.specular(place);
     let eta = eta_from_side(place, iors);
     let (exact, _) = fresnel_dielectric(builder.wo(place).z, eta);
     let f = match builder.model() {
@@ -40,8 +41,8 @@ pub fn add(builder: &mut Builder, place: Place, iors: [f32; 2], reflectance: Col
             }
         }
     };
-    let reflected = builder.factor(reflectance) * f;
-    let transmitted = builder.factor(transmittance) * (1.0 - f);
+    let reflected = builder.factor(place, reflectance) * f;
+    let transmitted = builder.factor(place, transmittance) * (1.0 - f);
     builder.delta_reflection(place, reflected);
     builder.delta_transmission(place, transmitted, eta);
 }

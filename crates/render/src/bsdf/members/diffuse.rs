@@ -5,6 +5,6 @@ use photinus_scene::ColorInput;
 
 pub fn add(builder: &mut Builder, place: Place, reflectance: ColorInput) {
     if place.front {
-        builder.lambert(place, builder.factor(reflectance));
+        builder.lambert(place, builder.factor(place, reflectance));
     }
 }

@@ -7,6 +7,7 @@ mod bump_map;
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod list;
 mod mask;
 mod normal_map;
 mod plastic;
@@ -18,8 +19,10 @@ mod thesis;
 mod thin_dielectric;
 mod two_sided;
 
+pub use list::{MATERIAL_KINDS, MaterialKind, material_kind};
+
 use super::builder::{Builder, Place};
-use super::materials::Materials;
+use super::materials::{Materials, Table};
 use crate::texture::TextureLookup;
 use photinus_scene::{Material, MicrofacetModel};
 
@@ -91,16 +94,23 @@ pub(super) fn opacity(
     }
 }
 
-/// The tables that a material's lobes look up: of which facets, and for a coat of which relative index.
-pub(super) fn tables(material: &Material) -> Vec<(MicrofacetModel, Option<f32>)> {
+/// The tables that a material's lobes look up.
+pub(super) fn tables(material: &Material) -> Vec<Table> {
+    let ggx = MicrofacetModel::Ggx;
     match *material {
-        Material::RoughConductor { model, .. } => vec![(model, None)],
-        Material::RoughPlastic { model, int_ior, ext_ior, .. } => {
-            vec![(model, Some(dielectric::relative_index([int_ior, ext_ior])))]
+        Material::RoughConductor { model, .. } => vec![Table::SplitSum(model)],
+        Material::RoughDielectric { model, int_ior, ext_ior, .. } => {
+            vec![Table::Interface(model, dielectric::relative_index([int_ior, ext_ior]))]
         }
-        Material::Principled { .. } => vec![(MicrofacetModel::Ggx, None)],
+        Material::RoughPlastic { model, int_ior, ext_ior, .. } => {
+            vec![Table::Plastic(model, dielectric::relative_index([int_ior, ext_ior]))]
+        }
+        Material::Principled { eta, .. } => {
+            vec![Table::SplitSum(ggx), Table::Interface(ggx, principled::relative_index(eta))]
+        }
         Material::Thesis { int_ior, ext_ior, .. } => {
-            vec![(MicrofacetModel::Ggx, Some(dielectric::relative_index([int_ior, ext_ior])))]
+            let eta = dielectric::relative_index([int_ior, ext_ior]);
+            vec![Table::Plastic(ggx, eta), Table::Interface(ggx, eta)]
         }
         _ => vec![],
     }
@@ -109,10 +119,7 @@ pub(super) fn tables(material: &Material) -> Vec<(MicrofacetModel, Option<f32>)>
 /// The relative indices of which a material needs the mean reflectance under diffuse light.
 pub(super) fn indices(material: &Material) -> Vec<f32> {
     match *material {
-        Material::Plastic { int_ior, ext_ior, .. } | Material::RoughPlastic { int_ior, ext_ior, .. } => {
-            vec![1.0 / dielectric::relative_index([int_ior, ext_ior])]
-        }
-        Material::Thesis { int_ior, ext_ior, .. } => {
+        Material::Plastic { int_ior, ext_ior, .. } | Material::Thesis { int_ior, ext_ior, .. } => {
             let eta = dielectric::relative_index([int_ior, ext_ior]);
             vec![eta, 1.0 / eta]
         }

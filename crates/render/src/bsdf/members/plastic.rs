@@ -17,28 +17,48 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
         return;
     }
     let eta = relative_index([int_ior, ext_ior]);
-    let base = builder.factor(diffuse_reflectance);
-    let specular = builder.factor(specular_reflectance);
+    let base = builder.factor(place, diffuse_reflectance);
+    let specular = builder.factor(place, specular_reflectance);
     if builder.model() == SurfaceModel::Fixed {
         let f = normal_reflectance(eta);
-        builder.delta_reflection(place, specular * f);
+        let mirror = builder.specular(place);
+        builder.delta_reflection(mirror, specular * f);
         builder.lambert(place, base * (1.0 - f));
         return;
     }
-    let f = fresnel_dielectric(builder.wo(place).z, eta).0;
-    builder.delta_reflection(place, specular * f);
-    let inside = builder.materials.diffuse_reflectance(1.0 / eta);
+    let mirror = builder.specular(place);
+    let f = fresnel_dielectric(builder.wo(mirror).z, eta).0;
+    builder.delta_reflection(mirror, specular * f);
+    let means = CoatMeans {
+        transmittance: 1.0 - builder.materials.diffuse_reflectance(eta),
+        internal_reflectance: builder.materials.diffuse_reflectance(1.0 / eta),
+    };
     let shape = CoatedDiffuse { transmittance: CoatTransmittance::Smooth { eta }, inv_eta_sq: 1.0 / (eta * eta) };
-    push_base(builder, place, shape, base, inside, nonlinear);
+    push_base(builder, place, shape, means, base, nonlinear);
 }
 
-/// Adds the base under a coat that reflects the share `inside` of diffuse light back to it: after all inter-reflections
-/// the base sends out albedo / (1 - inside * albedo) of what first left it; the colour shift of the denominator is left
-/// out where `nonlinear` is false.
-pub fn push_base(builder: &mut Builder, place: Place, shape: CoatedDiffuse, base: Vec3, inside: f32, nonlinear: bool) {
-    let lost = if nonlinear { base * inside } else { Vec3::splat(inside) };
-    let weight = base / (Vec3::ONE - lost).max(Vec3::splat(1e-4));
-    // Integrated over wi, T(wi) cos / (pi eta^2) is 1 - inside.
-    let albedo = weight * ((1.0 - inside) * shape.transmittance(builder.wo(place).z));
+/// A coat under diffuse light.
+pub struct CoatMeans {
+    /// What passes from outside.
+    pub transmittance: f32,
+    /// What is reflected back inside.
+    pub internal_reflectance: f32,
+}
+
+/// Adds the base under a coat: after all inter-reflections with the coat's inside the base sends out
+/// albedo / (1 - internal reflectance * albedo) of what first left it; the colour shift of the denominator is left out
+/// where `nonlinear` is false.
+pub fn push_base(
+    builder: &mut Builder,
+    place: Place,
+    shape: CoatedDiffuse,
+    means: CoatMeans,
+    base: Vec3,
+    nonlinear: bool,
+) {
+    let inside = means.internal_reflectance;
+    let kept = if nonlinear { base.min(Vec3::ONE) * inside } else { Vec3::splat(inside) };
+    let weight = base / (Vec3::ONE - kept).max(Vec3::splat(1e-4));
+    let albedo = weight * (means.transmittance * shape.inv_eta_sq * shape.transmittance(builder.wo(place).z));
     builder.push(place, LobeKind::Coated(shape), LobeSet::DIFFUSE_REFLECTION, weight, [albedo, Vec3::ZERO], 1.0);
 }

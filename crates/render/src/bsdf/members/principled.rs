@@ -14,6 +14,11 @@ use crate::texture::luminance;
 use photinus_geometry::Vec3;
 use photinus_scene::{Material, MicrofacetModel};
 
+/// The index, kept off 1, which leaves facets nothing to refract at.
+pub fn relative_index(eta: f32) -> f32 {
+    if eta.is_finite() && eta > 1.001 { eta } else { 1.001 }
+}
+
 /// The colour with its luminance divided out, white where it is black.
 fn tint_of(color: Vec3) -> Vec3 {
     let l = luminance(color);
@@ -47,14 +52,13 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     else {
         return;
     };
-    let color = builder.factor(base_color);
+    let color = builder.factor(place, base_color).min(Vec3::ONE);
     let roughness = builder.share(roughness);
     let metallic = builder.share(metallic);
     let spec_trans = builder.share(spec_trans);
     let glass = (1.0 - metallic) * spec_trans;
     let base = (1.0 - metallic) * (1.0 - spec_trans);
-    // An index of 1 leaves facets nothing to refract at.
-    let index = if eta.is_finite() && eta > 1.001 { eta } else { 1.001 };
+    let index = relative_index(eta);
     let alpha = alphas(roughness, builder.share(anisotropic));
     let facets = Microfacets::new(MicrofacetModel::Ggx, alpha);
     let fixed = builder.model() == SurfaceModel::Fixed;
@@ -62,6 +66,7 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     if !place.front {
         if glass > 0.0 {
             let mirror = is_mirror(alpha) || (fixed && facets.mean_alpha() < GATHER_ALPHA);
+            let place = builder.specular(place);
             let side = Specular { facets, mirror, fixed, eta: 1.0 / index, tint: InterfaceTint::PLAIN };
             side.add(builder, place, Vec3::splat(glass), color.map_sqrt() * glass);
         }
@@ -78,7 +83,8 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     };
     let mirror = is_mirror(alpha) || (fixed && facets.mean_alpha() < GATHER_ALPHA);
     let specular = Specular { facets, mirror, fixed, eta: index, tint };
-    specular.add(builder, place, Vec3::ONE, color.map_sqrt() * glass);
+    let specular_place = builder.specular(place);
+    specular.add(builder, specular_place, Vec3::ONE, color.map_sqrt() * glass);
 
     let sheen = builder.share(sheen) * (1.0 - metallic);
     let sheen_color = Vec3::ONE + (tint_of(color) - Vec3::ONE) * builder.share(sheen_tint);
@@ -97,11 +103,11 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     }
     if coat > 0.0 {
         let shape = Clearcoat { alpha: 0.1 + (0.001 - 0.1) * gloss };
-        let cos = builder.wo(place).z;
+        let cos = builder.wo(specular_place).z;
         let weight = Vec3::splat(0.25 * coat);
         let albedo = weight * (0.04 + 0.96 * schlick_weight(cos));
         let kind = LobeKind::Clearcoat(shape);
-        builder.push(place, kind, LobeSet::GLOSSY_REFLECTION, weight, [albedo, Vec3::ZERO], 1.0);
+        builder.push(specular_place, kind, LobeSet::GLOSSY_REFLECTION, weight, [albedo, Vec3::ZERO], 1.0);
     }
 }
 
@@ -145,11 +151,21 @@ impl Specular {
     }
 }
 
-/// Rough estimate of the base's directional albedo: it only shares out samples among the lobes.
+/// Estimate of the base's directional albedo, to share out samples among the lobes: the cosine of the difference angle is
+/// replaced by its mean square, 1/2 + cos / 3, and the mean of Schlick's weight under a cosine is 1 / 21.
 fn diffuse_albedo(shape: &PrincipledDiffuse, cos: f32) -> Vec3 {
+    const MEAN_WEIGHT: f32 = 1.0 / 21.0;
     let f = schlick_weight(cos);
-    let retro = 1.0 - 0.5 * f + shape.roughness * f;
-    shape.color * retro + shape.sheen * (0.1 + 0.5 * f)
+    let retro = 2.0 * shape.roughness * (0.5 + cos / 3.0);
+    let diffuse =
+        (1.0 - 0.5 * f) * (1.0 - 0.5 * MEAN_WEIGHT) + retro * (f + MEAN_WEIGHT + f * MEAN_WEIGHT * (retro - 1.0));
+    // The mean of 1 / (cos + cos_i) under a cosine is 2 (1 - cos ln(1 + 1 / cos)).
+    let inverse = 2.0 * (1.0 - cos * libm::logf(1.0 + 1.0 / cos.max(1e-3)));
+    let fss = (1.0 + (0.5 * retro - 1.0) * f) * (1.0 + (0.5 * retro - 1.0) * MEAN_WEIGHT);
+    let flat = 1.25 * (fss * (inverse - 0.5) + 0.5);
+    // The sheen's albedo, 0.088 at grazing and next to nothing head on, fitted to quadrature within 0.004.
+    let sheen = 0.088 * libm::powf(1.0 - cos, 2.6);
+    shape.color * (diffuse + (flat - diffuse) * shape.flatness) + shape.sheen * sheen
 }
 
 /// Square root per channel.

@@ -23,7 +23,7 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     }
     let (eta, k) = (builder.positive(eta), builder.positive(k));
     let f0 = fresnel_conductor(1.0, eta, k);
-    let color = builder.factor(specular_reflectance);
+    let color = builder.factor(place, specular_reflectance);
     if fixed {
         return builder.lambert(place, color * f0);
     }
@@ -34,9 +34,12 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
 /// Adds a reflecting lobe whose reflectance at normal incidence is `f0`.
 pub fn push(builder: &mut Builder, place: Place, shape: MicrofacetReflection, f0: Vec3, weight: Vec3) {
     let alpha = shape.facets.mean_alpha();
+    let place = builder.specular(place);
     let cos = builder.wo(place).z;
-    let reflectance =
-        builder.materials.split_sum(shape.facets.model).map_or(f0, |table| table.reflectance(alpha, cos, f0));
+    let reflectance = builder
+        .materials
+        .split_sum(shape.facets.model)
+        .map_or(f0, |table| table.reflectance(shape.facets.table_alpha(), cos, f0));
     let albedo = [reflectance * weight, Vec3::ZERO];
     builder.push(place, LobeKind::Reflection(shape), reflection_kind(alpha), weight, albedo, 1.0);
 }

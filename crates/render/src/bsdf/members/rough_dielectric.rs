@@ -24,8 +24,8 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     if is_mirror(alpha) || eta == 1.0 || (fixed && facets.mean_alpha() < GATHER_ALPHA) {
         return add_smooth(builder, place, [int_ior, ext_ior], specular_reflectance, specular_transmittance);
     }
-    let reflectance = builder.factor(specular_reflectance);
-    let transmittance = builder.factor(specular_transmittance);
+    let reflectance = builder.factor(place, specular_reflectance);
+    let transmittance = builder.factor(place, specular_transmittance);
     if fixed {
         let f = normal_reflectance(eta);
         builder.lambert(place, reflectance * f);
@@ -36,13 +36,28 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     push(builder, place, shape, Vec3::ONE);
 }
 
-/// Adds a rough interface; its albedo is estimated by the smooth one's.
+/// Adds a rough interface. Its albedo comes from the table of plain interfaces, or from the smooth one's where there is
+/// none; tinted reflection keeps its ratio to the plain one.
 pub fn push(builder: &mut Builder, place: Place, shape: RoughInterface, weight: Vec3) {
+    let place = builder.specular(place);
     let cos = builder.wo(place).z;
-    let f = fresnel_dielectric(cos, shape.eta).0;
-    let albedo =
-        [shape.tint.reflectance(f, cos) * shape.reflectance * weight, shape.transmittance * (1.0 - f) * weight];
-    let alpha = shape.facets.mean_alpha();
-    let set = reflection_kind(alpha) | transmission_kind(alpha);
+    let model = shape.facets.model;
+    let plain = fresnel_dielectric(cos, shape.eta).0;
+    let (outside, inside) = (
+        builder.materials.interface_table(model, shape.eta),
+        builder.materials.interface_table(model, 1.0 / shape.eta),
+    );
+    let alpha = shape.facets.table_alpha();
+    let [r, t] = match (outside, inside) {
+        (Some(table), _) => table.at(alpha, cos, false),
+        (None, Some(table)) => table.at(alpha, cos, true),
+        (None, None) => [plain, 1.0 - plain],
+    };
+    let tinted = shape.tint.reflectance(plain, cos) * (r / plain.max(1e-6));
+    let albedo = [tinted * shape.reflectance * weight, shape.transmittance * t * weight];
+    let set = {
+        let alpha = shape.facets.mean_alpha();
+        reflection_kind(alpha) | transmission_kind(alpha)
+    };
     builder.push(place, LobeKind::Interface(shape), set, weight, albedo, shape.eta);
 }

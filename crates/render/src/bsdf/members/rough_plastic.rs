@@ -1,7 +1,7 @@
 //! A diffuse base under a rough dielectric coat.
 
 use super::dielectric::{normal_reflectance, relative_index};
-use super::plastic::push_base;
+use super::plastic::{CoatMeans, push_base};
 use crate::bsdf::builder::{Builder, Place, reflection_kind};
 use crate::bsdf::lobe::LobeKind;
 use crate::bsdf::lobes::{CoatTransmittance, CoatedDiffuse, FacetFresnel, MicrofacetReflection};
@@ -25,15 +25,16 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
         let smooth = Material::Plastic { int_ior, ext_ior, diffuse_reflectance, specular_reflectance, nonlinear };
         return super::plastic::add(builder, place, &smooth);
     }
-    let base = builder.factor(diffuse_reflectance);
-    let specular = builder.factor(specular_reflectance);
+    let base = builder.factor(place, diffuse_reflectance);
+    let specular = builder.factor(place, specular_reflectance);
     let facets = Microfacets::new(model, [alpha; 2]);
     let table = match (builder.model(), builder.materials.plastic_table(model, eta)) {
         (SurfaceModel::Physical, Some(table)) => table,
         _ => {
             let f = normal_reflectance(eta);
             if facets.mean_alpha() < GATHER_ALPHA {
-                builder.delta_reflection(place, specular * f);
+                let mirror = builder.specular(place);
+                builder.delta_reflection(mirror, specular * f);
                 return builder.lambert(place, base * (1.0 - f));
             }
             return builder.lambert(place, specular * f + base * (1.0 - f));
@@ -41,14 +42,16 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     };
     let coat = table.at(facets.mean_alpha());
     push_coat(builder, place, facets, eta, 1.0 - coat.transmittance.at(builder.wo(place).z), specular);
+    let means = CoatMeans { transmittance: coat.mean_transmittance, internal_reflectance: coat.internal_reflectance };
     let transmittance = CoatTransmittance::Rough(coat.transmittance);
     let shape = CoatedDiffuse { transmittance, inv_eta_sq: 1.0 / (eta * eta) };
-    push_base(builder, place, shape, base, coat.internal_reflectance, nonlinear);
+    push_base(builder, place, shape, means, base, nonlinear);
 }
 
 /// Adds the coat's own reflection, of known directional reflectance.
 pub fn push_coat(builder: &mut Builder, place: Place, facets: Microfacets, eta: f32, reflectance: f32, weight: Vec3) {
     let shape = MicrofacetReflection { facets, fresnel: FacetFresnel::Dielectric { eta } };
+    let place = builder.specular(place);
     let albedo = [weight * reflectance, Vec3::ZERO];
     builder.push(place, LobeKind::Reflection(shape), reflection_kind(facets.mean_alpha()), weight, albedo, 1.0);
 }

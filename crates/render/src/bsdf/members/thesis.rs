@@ -27,8 +27,8 @@ use photinus_scene::{Material, MicrofacetModel};
 pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     let Material::Thesis { int_ior, ext_ior, roughness, reflectance, transmittance } = *material else { return };
     let roughness = builder.share(roughness);
-    let reflectance = builder.factor(reflectance);
-    let transmittance = builder.factor(transmittance);
+    let reflectance = builder.factor(place, reflectance).min(Vec3::ONE);
+    let transmittance = builder.factor(place, transmittance).min(Vec3::ONE);
     let iors = [int_ior, ext_ior];
     let opaque = transmittance == Vec3::ZERO;
     // The body of an opaque surface is on the far side, wherever it is seen from.
@@ -36,11 +36,12 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     if builder.model() == SurfaceModel::Fixed {
         return add_fixed(builder, place, eta, roughness, reflectance, transmittance);
     }
-    let cos = builder.wo(place).z;
     let alpha = roughness * roughness;
     let lambertian = alpha * alpha;
     let mean = builder.materials.diffuse_reflectance(eta);
     let smooth_place = Place { share: place.share * (1.0 - lambertian), ..place };
+    let specular_place = builder.specular(smooth_place);
+    let cos = builder.wo(specular_place).z;
     let rough_place = Place { share: place.share * lambertian, ..place };
     // Light scattered back by the body, of what enters it.
     let body = reflectance * (roughness * (1.0 - transmittance.max_element()));
@@ -58,14 +59,14 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     let coat = table.filter(|_| !mirror).map(|table| table.at(alpha));
     if mirror || eta == 1.0 {
         let f = fresnel_dielectric(cos, eta).0;
-        builder.delta_reflection(smooth_place, reflectance * f);
-        builder.delta_transmission(smooth_place, transmittance * (1.0 - f), eta);
+        builder.delta_reflection(specular_place, reflectance * f);
+        builder.delta_transmission(specular_place, transmittance * (1.0 - f), eta);
     } else if opaque {
         let reflected = coat.as_ref().map_or(mean, |coat| 1.0 - coat.transmittance.at(cos));
-        push_coat(builder, smooth_place, facets, eta, reflected, reflectance);
+        push_coat(builder, specular_place, facets, eta, reflected, reflectance);
     } else {
         let shape = RoughInterface { facets, eta, reflectance, transmittance, tint: InterfaceTint::PLAIN };
-        rough_dielectric::push(builder, smooth_place, shape, Vec3::ONE);
+        rough_dielectric::push(builder, specular_place, shape, Vec3::ONE);
     }
     // Seen from inside there is no body in front of the interface.
     if body != Vec3::ZERO && (opaque || place.front) {
@@ -76,7 +77,7 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
         // f = body T(wo) T(wi) / (pi mean T): reciprocal, and T(wo) of the light that the coat lets in comes back.
         let shape = CoatedDiffuse { transmittance, inv_eta_sq: 1.0 };
         let weight = body / mean_transmittance.max(1e-3);
-        let albedo = body * shape.transmittance(cos);
+        let albedo = body * shape.transmittance(builder.wo(smooth_place).z);
         let kind = LobeKind::Coated(shape);
         builder.push(smooth_place, kind, LobeSet::DIFFUSE_REFLECTION, weight, [albedo, Vec3::ZERO], 1.0);
     }
@@ -92,6 +93,7 @@ fn add_fixed(builder: &mut Builder, place: Place, eta: f32, roughness: f32, refl
         builder.lambert_transmission(place, transmitted, eta);
         return;
     }
+    let place = builder.specular(place);
     let exists = fresnel_dielectric(builder.wo(place).z, eta).0 < 1.0;
     if exists {
         builder.delta_reflection(place, reflected);

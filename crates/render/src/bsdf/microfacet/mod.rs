@@ -9,7 +9,7 @@ mod beckmann;
 mod ggx;
 mod tables;
 
-pub(super) use tables::{CosTable, PlasticTable, SplitSumTable};
+pub(super) use tables::{CosTable, InterfaceTable, PlasticTable, SplitSumTable};
 
 use photinus_geometry::Vec3;
 use photinus_scene::MicrofacetModel;
@@ -77,9 +77,14 @@ impl Microfacets {
         }
     }
 
-    /// One roughness for tables made for equal ones.
+    /// One roughness to class a lobe by: the geometric mean, as one narrow side makes a narrow lobe.
     pub fn mean_alpha(&self) -> f32 {
         (self.alpha[0] * self.alpha[1]).sqrt()
+    }
+
+    /// One roughness to look up tables made for equal ones: the quadratic mean, as masking grows with the square.
+    pub fn table_alpha(&self) -> f32 {
+        (0.5 * (self.alpha[0] * self.alpha[0] + self.alpha[1] * self.alpha[1])).sqrt()
     }
 }
 
