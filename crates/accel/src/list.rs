@@ -7,6 +7,8 @@ use photinus_geometry::{MAX_PRIMITIVES, Primitives};
 use photinus_intersect::{LeafTester, METHODS, find_method};
 use std::sync::Arc;
 
+type Build = fn(Arc<Primitives>, &BuildOptions) -> Result<Box<dyn Structure>, BuildError>;
+
 /// A member of the family.
 pub struct StructureInfo {
     /// The name on the command line.
@@ -15,7 +17,7 @@ pub struct StructureInfo {
     pub summary: &'static str,
     /// Where it was published.
     pub source: &'static str,
-    build: fn(Arc<Primitives>, &BuildOptions) -> Result<Box<dyn Structure>, BuildError>,
+    build: Build,
 }
 
 /// Every acceleration structure.

@@ -45,8 +45,11 @@ pub fn is_degenerate<S: Scalar>(vertices: &[[S; 3]; 3]) -> bool {
 }
 
 /// Whether a ray can hit anything: finite, with a direction.
+#[inline]
 pub(crate) fn is_traceable<S: Scalar>(origin: &[S; 3], dir: &[S; 3]) -> bool {
-    origin.iter().chain(dir).all(|x| x.is_finite()) && dir.iter().any(|&x| x != S::zero())
+    let finite = |v: &[S; 3]| v[0].is_finite() & v[1].is_finite() & v[2].is_finite();
+    let zero = S::zero();
+    finite(origin) & finite(dir) & ((dir[0] != zero) | (dir[1] != zero) | (dir[2] != zero))
 }
 
 pub(crate) fn sub<S: Scalar>(a: [S; 3], b: [S; 3]) -> [S; 3] {
@@ -62,6 +65,7 @@ pub(crate) fn cross<S: Scalar>(a: [S; 3], b: [S; 3]) -> [S; 3] {
 }
 
 /// The axis of the largest magnitude, the lowest of equals.
+#[inline]
 pub(crate) fn dominant_axis<S: Scalar>(v: &[S; 3]) -> usize {
     let [x, y, z] = v.map(S::abs);
     if x >= y && x >= z {

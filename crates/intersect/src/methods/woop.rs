@@ -44,10 +44,17 @@ impl<S: Scalar> Started<S> {
 }
 
 impl Started<f32> {
-    /// The sheared vertices of a triangle as [`finish`] takes them.
-    #[inline]
-    pub fn shear_exactly(&self, triangle: &[[f32; 3]; 3]) -> [[f64; 3]; 3] {
-        triangle.map(|v| self.shear(&v).map(f64::from))
+    /// The sheared vertices, as [`finish`] takes them, of the triangle whose coordinates `at(vertex, axis)` gives.
+    #[inline(always)]
+    pub fn shear_exactly(&self, at: impl Fn(usize, usize) -> f32) -> [[f64; 3]; 3] {
+        let [kx, ky, kz] = self.axes;
+        let vertex = |v: usize| {
+            let z = at(v, kz) - self.origin[kz];
+            let x = at(v, kx) - self.origin[kx] - self.shear[0] * z;
+            let y = at(v, ky) - self.origin[ky] - self.shear[1] * z;
+            [f64::from(x), f64::from(y), f64::from(z)]
+        };
+        [vertex(0), vertex(1), vertex(2)]
     }
 }
 
@@ -94,6 +101,7 @@ impl<S: Scalar> RtiMethod<S> for Woop {
         Prepared { vertices }
     }
 
+    #[inline]
     fn start(origin: [S; 3], dir: [S; 3]) -> Option<Started<S>> {
         if !is_traceable(&origin, &dir) {
             return None;

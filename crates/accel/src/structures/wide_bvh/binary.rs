@@ -12,10 +12,8 @@ use rayon::prelude::*;
 const BINS: usize = 16;
 /// Subtrees of fewer primitives are built by one thread.
 const PARALLEL_PRIMS: usize = 4096;
-/// Below this depth nodes are halved by count, which bounds the depth of any tree by 48 + 30.
+/// Below this depth nodes are halved by count, which takes 30 levels at most: no tree is deeper than 78.
 const MAX_SAH_DEPTH: u32 = 48;
-/// Deepest possible tree: halving 2^30 primitives takes 30 levels.
-pub const MAX_DEPTH: u32 = MAX_SAH_DEPTH + 30;
 
 /// A primitive to be placed: its padded bounds and id.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +58,15 @@ pub struct BinaryTree {
     pub nodes: Vec<BinaryNode>,
     /// Primitives in the order of the tree.
     pub prims: Vec<BuildPrim>,
+    /// What lengths are multiplied with before areas are taken, so that no scene is too small or too large for them.
+    pub scale: f32,
+}
+
+/// Half the surface area in scaled units.
+#[inline]
+pub fn scaled_half_area(b: &Aabb, scale: f32) -> f32 {
+    let d = b.size() * scale;
+    d.x * d.y + d.y * d.z + d.z * d.x
 }
 
 impl BinaryTree {
@@ -86,32 +93,34 @@ pub fn build(primitives: &Primitives) -> BinaryTree {
     let mut prims = gather(primitives);
     let leaf = BinaryNode { bounds: Aabb::EMPTY, first: 0, count: 0, left_count: 0 };
     let mut nodes = vec![leaf; (2 * prims.len()).saturating_sub(1)];
+    let size = extents(&prims).0.size().max_element();
+    let scale = if size > 0.0 && size.is_finite() { (1.0 / size).min(f32::MAX) } else { 1.0 };
     if !prims.is_empty() {
-        subtree(&mut prims, 0, &mut nodes, 0);
+        subtree(&mut prims, 0, &mut nodes, 0, scale);
     }
-    BinaryTree { nodes, prims }
+    BinaryTree { nodes, prims, scale }
 }
 
-fn subtree(prims: &mut [BuildPrim], first: u32, nodes: &mut [BinaryNode], depth: u32) {
+fn subtree(prims: &mut [BuildPrim], first: u32, nodes: &mut [BinaryNode], depth: u32, scale: f32) {
     let count = prims.len();
     let (bounds, centroids) = extents(prims);
     if count == 1 {
         nodes[0] = BinaryNode { bounds, first, count: 1, left_count: 0 };
         return;
     }
-    let left_count = if depth < MAX_SAH_DEPTH { split(prims, &centroids) } else { None }.unwrap_or(count / 2);
+    let left_count = if depth < MAX_SAH_DEPTH { split(prims, &centroids, scale) } else { None }.unwrap_or(count / 2);
     nodes[0] = BinaryNode { bounds, first, count: count as u32, left_count: left_count as u32 };
     let (left_prims, right_prims) = prims.split_at_mut(left_count);
     let (left_nodes, right_nodes) = nodes[1..].split_at_mut(2 * left_count - 1);
     let right_first = first + left_count as u32;
     if count >= PARALLEL_PRIMS {
         rayon::join(
-            || subtree(left_prims, first, left_nodes, depth + 1),
-            || subtree(right_prims, right_first, right_nodes, depth + 1),
+            || subtree(left_prims, first, left_nodes, depth + 1, scale),
+            || subtree(right_prims, right_first, right_nodes, depth + 1, scale),
         );
     } else {
-        subtree(left_prims, first, left_nodes, depth + 1);
-        subtree(right_prims, right_first, right_nodes, depth + 1);
+        subtree(left_prims, first, left_nodes, depth + 1, scale);
+        subtree(right_prims, right_first, right_nodes, depth + 1, scale);
     }
 }
 
@@ -151,7 +160,7 @@ impl Binning {
 
 /// Reorders the primitives by the cheapest split and returns the size of the first part; `None` where no bin border
 /// divides them.
-fn split(prims: &mut [BuildPrim], centroids: &Aabb) -> Option<usize> {
+fn split(prims: &mut [BuildPrim], centroids: &Aabb, scale: f32) -> Option<usize> {
     let binning = Binning::new(prims.len(), centroids);
     let mut bins = [[EMPTY_BIN; BINS]; 3];
     for p in prims.iter() {
@@ -169,13 +178,13 @@ fn split(prims: &mut [BuildPrim], centroids: &Aabb) -> Option<usize> {
         for i in (1..bins.len()).rev() {
             right.bounds = right.bounds.union(bins[i].bounds);
             right.count += bins[i].count;
-            right_costs[i] = right.bounds.half_area() * right.count as f32;
+            right_costs[i] = scaled_half_area(&right.bounds, scale) * right.count as f32;
         }
         let mut left = EMPTY_BIN;
         for i in 1..bins.len() {
             left.bounds = left.bounds.union(bins[i - 1].bounds);
             left.count += bins[i - 1].count;
-            let cost = left.bounds.half_area() * left.count as f32 + right_costs[i];
+            let cost = scaled_half_area(&left.bounds, scale) * left.count as f32 + right_costs[i];
             if left.count > 0 && (left.count as usize) < prims.len() && cost < best.0 {
                 best = (cost, axis, i);
             }

@@ -2,7 +2,7 @@
 //! dynamic programming (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 //! BVHs", HPG 2017, section 3.1).
 
-use super::binary::BinaryTree;
+use super::binary::{BinaryTree, scaled_half_area};
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
 use photinus_geometry::Primitives;
 
@@ -51,6 +51,8 @@ pub struct WideArrays {
     pub blocks: Vec<TriangleBlock>,
     /// Ids of leaves that are not blocks.
     pub ids: Vec<u32>,
+    /// Levels of nodes.
+    pub levels: u32,
 }
 
 struct Collapse<'a> {
@@ -63,13 +65,14 @@ struct Collapse<'a> {
 
 /// Collapses `tree`; `None` where an array outgrows its index.
 pub fn collapse(tree: &BinaryTree, primitives: &Primitives, leaves: Leaves) -> Option<WideArrays> {
-    let out = WideArrays { nodes: vec![Node::empty()], blocks: vec![TriangleBlock::empty()], ids: Vec::new() };
+    let out =
+        WideArrays { nodes: vec![Node::empty()], blocks: vec![TriangleBlock::empty()], ids: Vec::new(), levels: 1 };
     if tree.nodes.is_empty() {
         return Some(out);
     }
     let mut c = Collapse { tree, primitives, leaves, plans: Vec::with_capacity(tree.nodes.len()), out };
     c.plan();
-    c.emit_node(0, 0);
+    c.emit_node(0, 0, 1);
     let fits = [c.out.nodes.len(), c.out.blocks.len(), c.out.ids.len()].iter().all(|n| *n <= MAX_INDEX);
     fits.then_some(c.out)
 }
@@ -105,7 +108,7 @@ impl Collapse<'_> {
 
     fn plan_of(&self, index: usize) -> Plan {
         let node = &self.tree.nodes[index];
-        let area = node.bounds.half_area();
+        let area = scaled_half_area(&node.bounds, self.tree.scale);
         let leaf = match self.leaf_kind(index) {
             Some(Leaves::Blocks) => area * BLOCK_COST,
             Some(Leaves::Ids) => area * ID_COST * node.count as f32,
@@ -143,7 +146,8 @@ impl Collapse<'_> {
     }
 
     /// Writes the subtree at `index` as the wide node `place`, which exists.
-    fn emit_node(&mut self, index: usize, place: usize) {
+    fn emit_node(&mut self, index: usize, place: usize, level: u32) {
+        self.out.levels = self.out.levels.max(level);
         let mut slots = Vec::with_capacity(WIDTH);
         let node = &self.tree.nodes[index];
         if node.left_count == 0 || (index == 0 && matches!(self.plans[0].choices[0], Choice::Leaf)) {
@@ -160,6 +164,7 @@ impl Collapse<'_> {
         self.out.nodes.resize_with(first + interior, Node::empty);
         let mut next = first;
         let mut inner = Vec::with_capacity(interior);
+        let mut children = Vec::with_capacity(WIDTH);
         for (child, choice) in slots {
             let reference = if matches!(choice, Choice::Node) {
                 inner.push((child, next));
@@ -168,11 +173,11 @@ impl Collapse<'_> {
             } else {
                 self.emit_leaf(child)
             };
-            let bounds = self.tree.nodes[child].bounds;
-            self.out.nodes[place].push(&bounds, reference);
+            children.push((self.tree.nodes[child].bounds, reference));
         }
+        self.out.nodes[place] = Node::new(&children);
         for (child, place) in inner {
-            self.emit_node(child, place);
+            self.emit_node(child, place, level + 1);
         }
     }
 

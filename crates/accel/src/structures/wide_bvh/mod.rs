@@ -3,15 +3,18 @@
 
 mod binary;
 mod collapse;
+mod dispatch;
 mod kernels;
 mod layout;
 mod ray_setup;
+mod summary;
 mod traverse;
 
 use crate::list::leaf_tester;
 use crate::options::{BuildError, BuildOptions};
 use crate::structure::{RayCounters, Structure, StructureSummary};
 use collapse::Leaves;
+use dispatch::Chosen;
 use layout::{Node, TriangleBlock};
 use photinus_geometry::{Aabb, Hit, Primitives, Ray};
 use photinus_intersect::methods::woop::Woop;
@@ -28,55 +31,68 @@ pub const SOURCE: &str = "Wald, Benthin, Boulos, RT 2008; Ylitie, Karras, Laine,
 /// The tree.
 struct WideBvh {
     bounds: Aabb,
+    levels: u32,
+    stack_places: usize,
     nodes: Vec<Node>,
     blocks: Vec<TriangleBlock>,
     ids: Vec<u32>,
     tester: Box<dyn LeafTester>,
+    kernel: Chosen,
 }
 
 /// See [`crate::build`].
 pub fn build(primitives: Arc<Primitives>, options: &BuildOptions) -> Result<Box<dyn Structure>, BuildError> {
-    // The blocks hold the triangles of the fused method; the tester is left with the spheres.
-    let fused = options.method == <Woop as RtiMethod<f32>>::NAME;
-    let tester = if fused { sphere_tester(&primitives) } else { leaf_tester(&primitives, options)? };
-    let tree = binary::build(&primitives);
-    let bounds = tree.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds);
-    let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
-    let arrays = collapse::collapse(&tree, &primitives, leaves)
-        .ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
-    Ok(Box::new(WideBvh { bounds, nodes: arrays.nodes, blocks: arrays.blocks, ids: arrays.ids, tester }))
+    Ok(Box::new(WideBvh::new(&primitives, options)?))
+}
+
+impl WideBvh {
+    fn new(primitives: &Primitives, options: &BuildOptions) -> Result<Self, BuildError> {
+        // The blocks hold the triangles of the fused method; the tester is left with the spheres.
+        let fused = options.method == <Woop as RtiMethod<f32>>::NAME;
+        let tester = if fused { sphere_tester(primitives) } else { leaf_tester(primitives, options)? };
+        let tree = binary::build(primitives);
+        let bounds = tree.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds);
+        let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
+        let arrays = collapse::collapse(&tree, primitives, leaves)
+            .ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
+        Ok(Self {
+            bounds,
+            levels: arrays.levels,
+            stack_places: traverse::stack_places(arrays.levels),
+            nodes: arrays.nodes,
+            blocks: arrays.blocks,
+            ids: arrays.ids,
+            tester,
+            kernel: Chosen::new(options.kernel),
+        })
+    }
 }
 
 impl Structure for WideBvh {
     fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len());
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.trace::<_, false, false>(kernels::Scalar, ray, &mut RayCounters::default());
-        }
+        self.trace_all::<false, false>(rays, |i, hit| hits[i] = hit, &mut RayCounters::default());
     }
 
     fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len());
-        for (ray, hit) in rays.iter().zip(occluded) {
-            *hit = self.trace::<_, true, false>(kernels::Scalar, ray, &mut RayCounters::default()).is_hit();
-        }
+        self.trace_all::<true, false>(rays, |i, hit| occluded[i] = hit.is_hit(), &mut RayCounters::default());
     }
 
     fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
         assert_eq!(rays.len(), hits.len());
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.trace::<_, false, true>(kernels::Scalar, ray, counters);
-        }
+        self.trace_all::<false, true>(rays, |i, hit| hits[i] = hit, counters);
     }
 
     fn any_hit_counted(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
         assert_eq!(rays.len(), occluded.len());
-        for (ray, hit) in rays.iter().zip(occluded) {
-            *hit = self.trace::<_, true, true>(kernels::Scalar, ray, counters).is_hit();
-        }
+        self.trace_all::<true, true>(rays, |i, hit| occluded[i] = hit.is_hit(), counters);
     }
 
     fn summary(&self) -> StructureSummary {
-        StructureSummary { name: NAME, nodes: self.nodes.len() as u64, ..StructureSummary::default() }
+        summary::summary(self)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! What the kernels need of a ray, computed once.
 
+use super::layout::WIDTH;
 use crate::bounds::SLAB_SLACK;
 use photinus_geometry::{Aabb, Ray};
 use photinus_intersect::RtiMethod;
@@ -10,9 +11,13 @@ use photinus_intersect::methods::woop::{Started, Woop};
 pub struct RaySetup {
     /// The shear of the ray-triangle test.
     pub woop: Started<f32>,
-    /// Which of the bounds of each axis the ray enters through: an index into [`super::layout::Node::bounds`]; the
-    /// other is this one with its lowest bit flipped.
-    pub near_plane: [usize; 3],
+    /// Where the bounds that the ray enters through start for each axis, in floats from the start of
+    /// [`super::layout::Node::bounds`].
+    pub near: [u32; 3],
+    /// The same for those that it leaves through.
+    pub far: [u32; 3],
+    /// The octant of the direction, as [`super::layout::Node::order`] counts them.
+    pub octant: usize,
     /// Start of the ray for entry parameters.
     pub near_origin: [f32; 3],
     /// Start of the ray for exit parameters.
@@ -26,6 +31,19 @@ pub struct RaySetup {
 }
 
 impl RaySetup {
+    /// Stands where there is no ray.
+    pub const IDLE: Self = Self {
+        woop: Started { origin: [0.0; 3], axes: [0, 1, 2], shear: [0.0; 2], dir_z: 1.0 },
+        near: [0; 3],
+        far: [0; 3],
+        octant: 0,
+        near_origin: [0.0; 3],
+        far_origin: [0.0; 3],
+        near_inv: [0.0; 3],
+        far_inv: [0.0; 3],
+        t_min: 0.0,
+    };
+
     /// Prepares `ray` for a tree of these bounds; `None` where it can hit nothing.
     ///
     /// An axis along which the ray does not move gets an infinite reciprocal: entry and exit parameters are infinite
@@ -39,7 +57,9 @@ impl RaySetup {
         let woop = <Woop as RtiMethod<f32>>::start(ray.origin.to_array(), ray.dir.to_array())?;
         let mut setup = Self {
             woop,
-            near_plane: [0; 3],
+            near: [0; 3],
+            far: [0; 3],
+            octant: 0,
             near_origin: woop.origin,
             far_origin: woop.origin,
             near_inv: [0.0; 3],
@@ -48,12 +68,12 @@ impl RaySetup {
         };
         for axis in 0..3 {
             let d = ray.dir[axis];
-            let mut inv = 1.0 / d.abs();
-            if inv.is_infinite() && d != 0.0 {
-                inv = f32::NAN;
-            }
-            let inv = if d < 0.0 { -inv } else { inv };
-            setup.near_plane[axis] = 2 * axis + usize::from(d < 0.0);
+            let inv = 1.0 / d;
+            let inv = if inv.is_infinite() && d != 0.0 { f32::NAN } else { inv };
+            let backward = u32::from(inv < 0.0);
+            setup.near[axis] = (2 * axis as u32 + backward) * WIDTH as u32;
+            setup.far[axis] = (2 * axis as u32 + 1 - backward) * WIDTH as u32;
+            setup.octant |= (backward as usize) << axis;
             setup.near_inv[axis] = inv * (1.0 - SLAB_SLACK);
             setup.far_inv[axis] = inv * (1.0 + SLAB_SLACK);
         }
@@ -71,7 +91,7 @@ impl RaySetup {
             let o = self.woop.origin[axis];
             let reach = (tree_bounds.min[axis] - o).abs().max((tree_bounds.max[axis] - o).abs());
             let slack = 4.0 * SLAB_SLACK * reach;
-            let forward = self.near_plane[axis] & 1 == 0;
+            let forward = self.near[axis] < self.far[axis];
             self.near_origin[axis] = if forward { o + slack } else { o - slack };
             self.far_origin[axis] = if forward { o - slack } else { o + slack };
         }

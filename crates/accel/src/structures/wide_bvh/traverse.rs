@@ -1,29 +1,294 @@
-//! The walk of one ray through the tree, nearest children first.
+//! The walk of rays through the tree, many at a time.
+//!
+//! A ray is in one of four states, the kind of its next child: at a node, at a leaf of blocks, at a leaf of ids, at its
+//! end. Rays of one state are stepped together and sorted into the states of their next children, which leaves the
+//! processor no branch to guess: it works on several rays at once while memory answers for others.
+//!
+//! Visiting a node writes its children to the ray's stack from far to near and takes the nearest from the top. When a
+//! hit shortens a ray, children that it no longer reaches are taken out of the stack, so that whatever is popped is
+//! worth a visit.
 
 use super::WideBvh;
-use super::binary::MAX_DEPTH;
-use super::kernels::Kernel;
-use super::layout::{Child, TriangleBlock, WIDTH};
+use super::kernels::{Kernel, Lanes, Reach};
+use super::layout::{BLOCKS, Child, END, IDS, NODE, Node, TriangleBlock, WIDTH};
 use super::ray_setup::RaySetup;
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
 use photinus_intersect::methods::woop::{self, Started};
 
-/// All but one child of a node wait on every level.
-const STACK: usize = MAX_DEPTH as usize * (WIDTH - 1) + 1;
+/// Rays under way at a time.
+const SLOTS: usize = 16;
 
-/// A child that waits, and where the ray enters it.
+/// Places that a stack needs in a tree with so many levels of nodes: for the end, for all but one of the children of
+/// every node on the way, and for a whole node to be written.
+pub fn stack_places(levels: u32) -> usize {
+    1 + levels as usize * (WIDTH - 1) + WIDTH
+}
+
+/// A ray under way.
 #[derive(Clone, Copy)]
-struct Waiting {
-    entry: f32,
+struct Slot {
+    setup: RaySetup,
+    /// Where the search ends: the end of the ray or the nearest hit.
+    t_max: f32,
+    best: Hit,
     child: Child,
+    /// Index in the batch.
+    ray: usize,
+    /// Filled places of the stack.
+    waiting: usize,
+}
+
+const IDLE: Slot = Slot { setup: RaySetup::IDLE, t_max: 0.0, best: Hit::MISS, child: Child::END, ray: 0, waiting: 0 };
+
+/// The stacks of all slots: children that wait, and where the ray enters them.
+struct Stacks {
+    /// Places of one slot.
+    places: usize,
+    entries: Vec<f32>,
+    children: Vec<Child>,
+}
+
+impl Stacks {
+    fn new(places: usize, slots: usize) -> Self {
+        Self { places, entries: vec![0.0; places * slots], children: vec![Child::END; places * slots] }
+    }
+
+    /// Eight places of a slot's stack.
+    #[inline(always)]
+    fn lanes(&mut self, slot: u8, place: usize) -> Lanes<'_> {
+        let start = usize::from(slot) * self.places + place;
+        Lanes {
+            entries: self.entries[start..][..WIDTH].as_mut_array().expect("WIDTH long"),
+            children: self.children[start..][..WIDTH].as_mut_array().expect("WIDTH long"),
+        }
+    }
+
+    /// Takes children beyond `t_max` out of a slot's stack and returns how many places are left filled.
+    #[inline(always)]
+    fn shorten(&mut self, slot: u8, waiting: usize, t_max: f32) -> usize {
+        let start = usize::from(slot) * self.places;
+        let entries = &mut self.entries[start..][..waiting];
+        let children = &mut self.children[start..][..waiting];
+        let mut kept = 1;
+        for i in 1..waiting {
+            let (entry, child) = (entries[i], children[i]);
+            entries[kept] = entry;
+            children[kept] = child;
+            kept += usize::from(entry <= t_max);
+        }
+        kept
+    }
+}
+
+/// The slots by the kind of their next child.
+struct States {
+    slots: [[u8; SLOTS]; 4],
+    lens: [usize; 4],
+}
+
+impl States {
+    #[inline(always)]
+    fn push(&mut self, kind: usize, slot: u8) {
+        self.slots[kind][self.lens[kind] % SLOTS] = slot;
+        self.lens[kind] += 1;
+    }
+
+    #[inline(always)]
+    fn take(&mut self, kind: usize) -> ([u8; SLOTS], usize) {
+        (self.slots[kind], std::mem::take(&mut self.lens[kind]))
+    }
+}
+
+/// Everything that a batch needs.
+struct Walk<'a, K: Kernel, F> {
+    tree: &'a WideBvh,
+    kernel: K,
+    rays: &'a [Ray],
+    next: usize,
+    slots: [Slot; SLOTS],
+    stacks: Stacks,
+    /// Where the children of each kind lie, and how many bytes apart.
+    places: [(*const u8, usize); 4],
+    states: States,
+    set: F,
+}
+
+impl WideBvh {
+    /// The nearest hits, or with `ANY` any hits, of all rays, handed to `set`; counts the work where `COUNT` says so.
+    #[inline(always)]
+    pub(super) fn trace<K: Kernel, const ANY: bool, const COUNT: bool>(
+        &self,
+        kernel: K,
+        rays: &[Ray],
+        set: impl FnMut(usize, Hit),
+        counters: &mut RayCounters,
+    ) {
+        if COUNT {
+            counters.traversal.rays += rays.len() as u64;
+        }
+        let states = States { slots: [[0; SLOTS]; 4], lens: [0; 4] };
+        let nodes = (self.nodes.as_ptr().cast::<u8>(), size_of::<Node>());
+        let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
+        let ids = (self.ids.as_ptr().cast::<u8>(), size_of::<u32>());
+        let places = [nodes, nodes, blocks, ids];
+        let stacks = Stacks::new(self.stack_places, SLOTS.min(rays.len()));
+        let slots = [IDLE; SLOTS];
+        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, places, states, set };
+        walk.start();
+        while walk.states.lens != [0; 4] {
+            walk.visit_nodes::<COUNT>(counters);
+            walk.visit_blocks::<ANY, COUNT>(counters);
+            if walk.states.lens[IDS] > 0 {
+                walk.visit_ids::<ANY, COUNT>(counters);
+            }
+            walk.end_rays();
+        }
+    }
+}
+
+impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
+    /// Fills the slots.
+    #[inline(always)]
+    fn start(&mut self) {
+        for index in 0..SLOTS.min(self.rays.len()) as u8 {
+            self.fill(index);
+        }
+    }
+
+    /// Starts the next ray of the batch in a slot, if one is left.
+    #[inline(always)]
+    fn fill(&mut self, index: u8) {
+        let Some((ray, setup)) = self.next_ray() else { return };
+        let slot = &mut self.slots[usize::from(index) % SLOTS];
+        slot.setup = setup;
+        slot.t_max = self.rays[ray].t_max;
+        slot.best = Hit::MISS;
+        slot.child = Child::node(0);
+        slot.ray = ray;
+        slot.waiting = 1;
+        self.states.push(NODE, index);
+    }
+
+    /// The next ray of the batch that can hit anything; misses are handed out on the way.
+    #[inline(always)]
+    fn next_ray(&mut self) -> Option<(usize, RaySetup)> {
+        while self.next < self.rays.len() {
+            let i = self.next;
+            self.next += 1;
+            match RaySetup::new(&self.rays[i], &self.tree.bounds) {
+                Some(setup) => return Some((i, setup)),
+                None => (self.set)(i, Hit::MISS),
+            }
+        }
+        None
+    }
+
+    /// Takes the next of `waiting` children from a slot's stack.
+    #[inline(always)]
+    fn pop(&mut self, index: u8, waiting: usize) {
+        let slot = &mut self.slots[usize::from(index) % SLOTS];
+        let child = self.stacks.children[usize::from(index) * self.stacks.places + waiting - 1];
+        slot.waiting = waiting - 1;
+        slot.child = child;
+        let kind = child.kind();
+        let (start, size) = self.places[kind];
+        self.kernel.prefetch(start.wrapping_add(child.index() * size), 5);
+        self.states.push(kind, index);
+    }
+
+    #[inline(always)]
+    fn visit_nodes<const COUNT: bool>(&mut self, counters: &mut RayCounters) {
+        let (indices, len) = self.states.take(NODE);
+        if COUNT {
+            counters.traversal.nodes_visited += len as u64;
+        }
+        for &index in &indices[..len] {
+            let slot = &mut self.slots[usize::from(index) % SLOTS];
+            let node = &self.tree.nodes[slot.child.index()];
+            let place = slot.waiting;
+            let out = self.stacks.lanes(index, place);
+            let count = self.kernel.node(&slot.setup, node, slot.t_max, out);
+            self.pop(index, place + count);
+        }
+    }
+
+    #[inline(always)]
+    fn visit_blocks<const ANY: bool, const COUNT: bool>(&mut self, counters: &mut RayCounters) {
+        let (indices, len) = self.states.take(BLOCKS);
+        for &index in &indices[..len] {
+            let slot = &mut self.slots[usize::from(index) % SLOTS];
+            let mut work = LeafWork::default();
+            for block in &self.tree.blocks[slot.child.range()] {
+                let reach = Reach::new(slot.setup.woop.dir_z, slot.setup.t_min, slot.t_max);
+                let mut mask = self.kernel.block(&slot.setup, &reach, block);
+                if COUNT {
+                    work.tests += block.len() as u32;
+                }
+                while mask != 0 {
+                    let lane = mask.trailing_zeros() as usize;
+                    mask &= mask - 1;
+                    if let Some(hit) = lane_hit(&slot.setup.woop, block, lane, slot.setup.t_min, slot.t_max) {
+                        work.hits += 1;
+                        if hit.beats(&slot.best) {
+                            slot.best = hit;
+                            slot.t_max = hit.t;
+                        }
+                    }
+                }
+            }
+            self.leave_leaf::<ANY, COUNT>(index, work, counters);
+        }
+    }
+
+    #[inline(never)]
+    fn visit_ids<const ANY: bool, const COUNT: bool>(&mut self, counters: &mut RayCounters) {
+        let (indices, len) = self.states.take(IDS);
+        for &index in &indices[..len] {
+            let slot = &mut self.slots[usize::from(index) % SLOTS];
+            let ids = &self.tree.ids[slot.child.range()];
+            let work = self.tree.tester.closest_hit(&self.rays[slot.ray], ids, &mut slot.best);
+            slot.t_max = slot.t_max.min(slot.best.t);
+            self.leave_leaf::<ANY, COUNT>(index, work, counters);
+        }
+    }
+
+    #[inline(always)]
+    fn leave_leaf<const ANY: bool, const COUNT: bool>(
+        &mut self,
+        index: u8,
+        work: LeafWork,
+        counters: &mut RayCounters,
+    ) {
+        if COUNT {
+            counters.add_leaf(work.tests as usize, work);
+        }
+        let slot = &mut self.slots[usize::from(index) % SLOTS];
+        if work.hits > 0 {
+            slot.waiting = if ANY { 1 } else { self.stacks.shorten(index, slot.waiting, slot.t_max) };
+        }
+        let waiting = slot.waiting;
+        self.pop(index, waiting);
+    }
+
+    /// Hands out the hits of rays that have ended and starts others in their slots.
+    #[inline(always)]
+    fn end_rays(&mut self) {
+        let (indices, len) = self.states.take(END);
+        for &index in &indices[..len] {
+            let slot = &self.slots[usize::from(index) % SLOTS];
+            (self.set)(slot.ray, slot.best);
+            self.fill(index);
+        }
+    }
 }
 
 /// The hit of one lane, in the ray's interval and no farther than `t_max`.
-#[inline]
+#[inline(always)]
 fn lane_hit(ray: &Started<f32>, block: &TriangleBlock, lane: usize, t_min: f32, t_max: f32) -> Option<Hit> {
-    let hit = woop::finish(&ray.shear_exactly(&block.triangle(lane)), f64::from(ray.dir_z))?;
+    let sheared = ray.shear_exactly(|vertex, axis| block.vertices[3 * vertex + axis][lane]);
+    let hit = woop::finish(&sheared, f64::from(ray.dir_z))?;
     let t = hit.t as f32;
     (t >= t_min && t <= t_max && t.is_finite()).then_some(Hit {
         t,
@@ -31,118 +296,4 @@ fn lane_hit(ray: &Started<f32>, block: &TriangleBlock, lane: usize, t_min: f32, 
         beta: hit.beta as f32,
         prim: block.ids[lane],
     })
-}
-
-impl WideBvh {
-    /// The nearest hit, or with `ANY` any hit, of one ray; counts its work where `COUNT` says so.
-    #[inline(always)]
-    pub(super) fn trace<K: Kernel, const ANY: bool, const COUNT: bool>(
-        &self,
-        kernel: K,
-        ray: &Ray,
-        counters: &mut RayCounters,
-    ) -> Hit {
-        let mut best = Hit::MISS;
-        if COUNT {
-            counters.traversal.rays += 1;
-        }
-        let Some(setup) = RaySetup::new(ray, &self.bounds) else { return best };
-        let mut stack = [Waiting { entry: 0.0, child: Child::node(0) }; STACK];
-        let mut waiting = 0;
-        let mut child = Child::node(0);
-        let mut t_max = ray.t_max;
-        let mut entries = [0.0; WIDTH];
-        'walk: loop {
-            while !child.is_leaf() {
-                let node = &self.nodes[child.index()];
-                if COUNT {
-                    counters.traversal.nodes_visited += 1;
-                }
-                let mut mask = kernel.node(&setup, node, t_max, &mut entries);
-                if mask == 0 {
-                    match pop(&stack, &mut waiting, t_max) {
-                        Some(next) => child = next,
-                        None => break 'walk,
-                    }
-                    continue;
-                }
-                // Insertion by falling entry keeps the nearest on top.
-                let bottom = waiting;
-                while mask != 0 {
-                    let lane = mask.trailing_zeros() as usize;
-                    mask &= mask - 1;
-                    let entry = entries[lane];
-                    let mut i = waiting;
-                    while i > bottom && stack[i - 1].entry < entry {
-                        stack[i] = stack[i - 1];
-                        i -= 1;
-                    }
-                    stack[i] = Waiting { entry, child: node.children[lane] };
-                    waiting += 1;
-                }
-                waiting -= 1;
-                child = stack[waiting].child;
-            }
-            let work = self.leaf::<K, ANY>(kernel, ray, &setup, child, &mut best);
-            if COUNT {
-                counters.add_leaf(work.tests as usize, work);
-            }
-            if ANY && best.is_hit() {
-                break;
-            }
-            t_max = t_max.min(best.t);
-            match pop(&stack, &mut waiting, t_max) {
-                Some(next) => child = next,
-                None => break,
-            }
-        }
-        best
-    }
-
-    #[inline(always)]
-    fn leaf<K: Kernel, const ANY: bool>(
-        &self,
-        kernel: K,
-        ray: &Ray,
-        setup: &RaySetup,
-        leaf: Child,
-        best: &mut Hit,
-    ) -> LeafWork {
-        if leaf.is_ids() {
-            return self.tester.closest_hit(ray, &self.ids[leaf.range()], best);
-        }
-        let mut work = LeafWork::default();
-        for block in &self.blocks[leaf.range()] {
-            let mut mask = kernel.block(setup, block);
-            work.tests += block.len() as u32;
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                let t_max = ray.t_max.min(best.t);
-                if let Some(hit) = lane_hit(&setup.woop, block, lane, ray.t_min, t_max) {
-                    work.hits += 1;
-                    if hit.beats(best) {
-                        *best = hit;
-                    }
-                    if ANY {
-                        return work;
-                    }
-                }
-            }
-        }
-        work
-    }
-}
-
-/// The next waiting child that can still matter.
-#[inline(always)]
-fn pop(stack: &[Waiting; STACK], waiting: &mut usize, t_max: f32) -> Option<Child> {
-    while *waiting > 0 {
-        *waiting -= 1;
-        let next = stack[*waiting];
-        if next.entry <= t_max {
-            return Some(next.child);
-        }
-    }
-    None
 }

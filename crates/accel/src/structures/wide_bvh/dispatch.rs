@@ -1,0 +1,94 @@
+//! Which kernel runs, decided once when the tree is built.
+
+use super::WideBvh;
+use super::kernels::scalar::Scalar;
+#[cfg(target_arch = "x86_64")]
+use super::kernels::{avx2::Avx2, avx512::Avx512};
+use crate::options::Kernel;
+use crate::structure::RayCounters;
+use photinus_geometry::{Hit, Ray};
+
+/// A kernel that this machine can run.
+#[derive(Clone, Copy)]
+pub enum Chosen {
+    /// Plain Rust.
+    Scalar,
+    /// AVX2.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    /// AVX-512.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
+}
+
+impl Chosen {
+    /// The kernel asked for, or the next best that the machine has.
+    pub fn new(kernel: Kernel) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let (Kernel::Auto | Kernel::Avx512, Some(k)) = (kernel, Avx512::detect()) {
+                return Self::Avx512(k);
+            }
+            if let (Kernel::Auto | Kernel::Avx512 | Kernel::Avx2, Some(k)) = (kernel, Avx2::detect()) {
+                return Self::Avx2(k);
+            }
+        }
+        Self::Scalar
+    }
+
+    /// The name of the kernel that runs; never `Auto`.
+    #[cfg(test)]
+    pub fn kernel(self) -> Kernel {
+        match self {
+            Self::Scalar => Kernel::Scalar,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => Kernel::Avx2,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => Kernel::Avx512,
+        }
+    }
+}
+
+impl WideBvh {
+    /// Traces every ray and hands out its hit.
+    pub(super) fn trace_all<const ANY: bool, const COUNT: bool>(
+        &self,
+        rays: &[Ray],
+        set: impl FnMut(usize, Hit),
+        counters: &mut RayCounters,
+    ) {
+        match self.kernel {
+            Chosen::Scalar => self.trace::<_, ANY, COUNT>(Scalar, rays, set, counters),
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: having the kernel proves that the machine has AVX2.
+            Chosen::Avx2(kernel) => unsafe { self.trace_avx2::<ANY, COUNT>(kernel, rays, set, counters) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: having the kernel proves that the machine has AVX-512F, VL and DQ.
+            Chosen::Avx512(kernel) => unsafe { self.trace_avx512::<ANY, COUNT>(kernel, rays, set, counters) },
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
+    fn trace_avx2<const ANY: bool, const COUNT: bool>(
+        &self,
+        kernel: Avx2,
+        rays: &[Ray],
+        set: impl FnMut(usize, Hit),
+        counters: &mut RayCounters,
+    ) {
+        self.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512vl,avx512dq,bmi1,bmi2,popcnt,lzcnt")]
+    fn trace_avx512<const ANY: bool, const COUNT: bool>(
+        &self,
+        kernel: Avx512,
+        rays: &[Ray],
+        set: impl FnMut(usize, Hit),
+        counters: &mut RayCounters,
+    ) {
+        self.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
+    }
+}

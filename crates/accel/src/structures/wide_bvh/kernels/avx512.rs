@@ -1,0 +1,100 @@
+//! AVX-512 on eight lanes: mask registers and 32 vector registers. Sixteen lanes would share fewer ports and gain
+//! nothing on nodes of eight.
+
+use super::{Kernel, Lanes, Reach};
+use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
+use crate::structures::wide_bvh::ray_setup::RaySetup;
+use std::arch::x86_64::*;
+
+/// The kernel.
+#[derive(Clone, Copy)]
+pub struct Avx512(());
+
+impl Avx512 {
+    /// The kernel, where the machine can run it.
+    pub fn detect() -> Option<Self> {
+        let has = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq");
+        has.then_some(Self(()))
+    }
+}
+
+impl Kernel for Avx512 {
+    #[inline(always)]
+    fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
+        // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads and stores are of eight words each, and
+        // `near` and `far` are places of bounds below 6 x 8.
+        unsafe {
+            let spread = |x: f32| _mm256_set1_ps(x);
+            let bounds = node.bounds.as_ptr().cast::<f32>();
+            let mut entry = _mm256_set1_ps(ray.t_min);
+            let mut exit = _mm256_set1_ps(t_max);
+            for axis in 0..3 {
+                let near = _mm256_loadu_ps(bounds.add(ray.near[axis] as usize));
+                let far = _mm256_loadu_ps(bounds.add(ray.far[axis] as usize));
+                let t_near =
+                    _mm256_mul_ps(_mm256_sub_ps(near, spread(ray.near_origin[axis])), spread(ray.near_inv[axis]));
+                let t_far = _mm256_mul_ps(_mm256_sub_ps(far, spread(ray.far_origin[axis])), spread(ray.far_inv[axis]));
+                // The second operand is taken where the first is not a number.
+                entry = _mm256_max_ps(t_near, entry);
+                exit = _mm256_min_ps(t_far, exit);
+            }
+            // The order of slots, each index in its own lane; the permutations look at the lowest three bits.
+            let order = _mm256_set1_epi32(node.orders[ray.octant % 8] as i32);
+            let order = _mm256_srlv_epi32(order, _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
+            let entry = _mm256_permutevar8x32_ps(entry, order);
+            let exit = _mm256_permutevar8x32_ps(exit, order);
+            let children = _mm256_loadu_si256(node.children.as_ptr().cast());
+            let children = _mm256_permutevar8x32_epi32(children, order);
+            let mask = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(entry, exit);
+            _mm256_storeu_ps(out.entries.as_mut_ptr(), _mm256_maskz_compress_ps(mask, entry));
+            _mm256_storeu_si256(out.children.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, children));
+            mask.count_ones() as usize
+        }
+    }
+
+    #[inline(always)]
+    fn block(self, ray: &RaySetup, reach: &Reach, block: &TriangleBlock) -> u32 {
+        // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads are of eight words each, and axes are below 3.
+        unsafe {
+            let [kx, ky, kz] = ray.woop.axes;
+            let origin = [kx, ky, kz].map(|k| _mm256_set1_ps(ray.woop.origin[k]));
+            let shear_by = ray.woop.shear.map(|x| _mm256_set1_ps(x));
+            let vertices = block.vertices.as_ptr().cast::<f32>();
+            let load = |v: usize, k: usize| _mm256_loadu_ps(vertices.add((3 * v + k) * WIDTH));
+            let mut x = [_mm256_setzero_ps(); 3];
+            let mut y = x;
+            let mut z = x;
+            for v in 0..3 {
+                z[v] = _mm256_sub_ps(load(v, kz), origin[2]);
+                let shear = |k: usize, i: usize| {
+                    _mm256_sub_ps(_mm256_sub_ps(load(v, k), origin[i]), _mm256_mul_ps(shear_by[i], z[v]))
+                };
+                x[v] = shear(kx, 0);
+                y[v] = shear(ky, 1);
+            }
+            let edge = |i: usize, j: usize| _mm256_sub_ps(_mm256_mul_ps(x[i], y[j]), _mm256_mul_ps(y[i], x[j]));
+            let edges = [edge(2, 1), edge(0, 2), edge(1, 0)];
+            let zero = _mm256_setzero_ps();
+            // Of the minimum and the maximum the second operand is taken where either is not a number.
+            let least = _mm256_min_ps(_mm256_min_ps(z[0], z[1]), z[2]);
+            let most = _mm256_max_ps(_mm256_max_ps(z[0], z[1]), z[2]);
+            let (low, high) = (_mm256_set1_ps(reach.low), _mm256_set1_ps(reach.high));
+            let below = edges.map(|e| _mm256_cmp_ps_mask::<_CMP_LT_OQ>(e, zero));
+            let above = edges.map(|e| _mm256_cmp_ps_mask::<_CMP_GT_OQ>(e, zero));
+            let ids = _mm256_loadu_si256(block.ids.as_ptr().cast());
+            let used = _mm256_cmpneq_epi32_mask(ids, _mm256_set1_epi32(-1));
+            let beyond = _mm256_cmp_ps_mask::<_CMP_GT_OQ>(least, high) | _mm256_cmp_ps_mask::<_CMP_LT_OQ>(most, low);
+            u32::from(used & !beyond & !((below[0] | below[1] | below[2]) & (above[0] | above[1] | above[2])))
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, what: *const T, lines: usize) {
+        for line in 0..lines {
+            // SAFETY: a prefetch reads nothing that the program could notice, at any address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(what.cast::<i8>().wrapping_add(64 * line)) };
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The two tests of the hot loop, eight lanes wide, once per instruction set.
+//!
+//! Both are filters: a box may be entered in vain, and a triangle that passes is finished in doubles by
+//! [`photinus_intersect::methods::woop::finish`]. They let through all that can be hit, so the results do not depend
+//! on the kernel; and they compute the same operations in the same order, so that neither does the work.
+
+#[cfg(target_arch = "x86_64")]
+pub mod avx2;
+#[cfg(target_arch = "x86_64")]
+pub mod avx512;
+pub mod scalar;
+
+use super::layout::{Child, Node, TriangleBlock, WIDTH};
+use super::ray_setup::RaySetup;
+use crate::bounds::SLAB_SLACK;
+
+/// A kernel: the tests of one instruction set. Having one proves that the machine can run it.
+pub trait Kernel: Copy {
+    /// Writes the children of `node` that the ray may enter at a parameter up to `t_max` to `out`, from far to near,
+    /// and returns how many they are; what lies behind them in `out` is left undefined.
+    fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize;
+
+    /// Triangles of `block` that the ray may hit within its reach, as a mask of lanes.
+    fn block(self, ray: &RaySetup, reach: &Reach, block: &TriangleBlock) -> u32;
+
+    /// Asks for the first `lines` cache lines of `what` to be near soon.
+    fn prefetch<T>(self, what: *const T, lines: usize);
+}
+
+/// Eight places of a stack: where the ray enters, and what.
+pub struct Lanes<'a> {
+    /// Entry parameters.
+    pub entries: &'a mut [f32; WIDTH],
+    /// Children.
+    pub children: &'a mut [Child; WIDTH],
+}
+
+/// What is left of a ray's interval, along its dominant axis from its start, a little widened: triangles all below
+/// `low` or all above `high` are out of reach. Weights of vertices are never negative, so t is never outside of what
+/// the vertices span.
+#[derive(Clone, Copy, Debug)]
+pub struct Reach {
+    /// The lower end.
+    pub low: f32,
+    /// The upper end.
+    pub high: f32,
+}
+
+impl Reach {
+    /// The reach of parameters from `t_min` to `t_max`.
+    #[inline(always)]
+    pub fn new(dir_z: f32, t_min: f32, t_max: f32) -> Self {
+        let (a, b) = (t_min * dir_z, t_max * dir_z);
+        let (low, high) = if dir_z < 0.0 { (b, a) } else { (a, b) };
+        // The smallest normal number covers products that round in the last places there are.
+        let slack = |x: f32| x.abs() * SLAB_SLACK + f32::MIN_POSITIVE;
+        Self { low: low - slack(low), high: high + slack(high) }
+    }
+}

@@ -1,0 +1,77 @@
+//! Plain Rust: the twin that the other kernels are tested against.
+
+use super::{Kernel, Lanes, Reach};
+use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
+use crate::structures::wide_bvh::ray_setup::RaySetup;
+use photinus_geometry::NO_HIT;
+
+/// The kernel.
+#[derive(Clone, Copy)]
+pub struct Scalar;
+
+/// The larger; `b` where `a` is not a number.
+#[inline(always)]
+fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller; `b` where `a` is not a number.
+#[inline(always)]
+fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+impl Kernel for Scalar {
+    #[inline(always)]
+    fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
+        let mut entries = [ray.t_min; WIDTH];
+        let mut exits = [t_max; WIDTH];
+        for axis in 0..3 {
+            let near = &node.bounds[ray.near[axis] as usize / WIDTH];
+            let far = &node.bounds[ray.far[axis] as usize / WIDTH];
+            for lane in 0..WIDTH {
+                entries[lane] = max((near[lane] - ray.near_origin[axis]) * ray.near_inv[axis], entries[lane]);
+                exits[lane] = min((far[lane] - ray.far_origin[axis]) * ray.far_inv[axis], exits[lane]);
+            }
+        }
+        let order = node.orders[ray.octant % 8];
+        let mut count = 0;
+        for i in 0..WIDTH {
+            let lane = (order >> (3 * i)) as usize % WIDTH;
+            // Written always and kept where it is entered: a branch would be guessed wrong too often.
+            out.entries[count % WIDTH] = entries[lane];
+            out.children[count % WIDTH] = node.children[lane];
+            count += usize::from(entries[lane] <= exits[lane]);
+        }
+        count
+    }
+
+    #[inline(always)]
+    fn block(self, ray: &RaySetup, reach: &Reach, block: &TriangleBlock) -> u32 {
+        let [kx, ky, kz] = ray.woop.axes;
+        let (mut x, mut y, mut z) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
+        for v in 0..3 {
+            for lane in 0..WIDTH {
+                z[v][lane] = block.vertices[3 * v + kz][lane] - ray.woop.origin[kz];
+                x[v][lane] = block.vertices[3 * v + kx][lane] - ray.woop.origin[kx] - ray.woop.shear[0] * z[v][lane];
+                y[v][lane] = block.vertices[3 * v + ky][lane] - ray.woop.origin[ky] - ray.woop.shear[1] * z[v][lane];
+            }
+        }
+        let mut mask = 0;
+        for lane in 0..WIDTH {
+            let edge = |i: usize, j: usize| x[i][lane] * y[j][lane] - y[i][lane] * x[j][lane];
+            let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
+            let negative = u < 0.0 || v < 0.0 || w < 0.0;
+            let positive = u > 0.0 || v > 0.0 || w > 0.0;
+            let least = min(min(z[0][lane], z[1][lane]), z[2][lane]);
+            let most = max(max(z[0][lane], z[1][lane]), z[2][lane]);
+            let beyond = least > reach.high || most < reach.low;
+            let used = block.ids[lane] != NO_HIT;
+            mask |= u32::from(used && !beyond && !(negative && positive)) << lane;
+        }
+        mask
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _what: *const T, _lines: usize) {}
+}
