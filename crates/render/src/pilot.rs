@@ -140,7 +140,9 @@ pub(crate) fn sky_view(world: &World, points: &[VisiblePoint], seed: u64) -> Sky
     view
 }
 
-/// The sphere around most of what is visible; around everything where nothing is, or where it is most of the scene.
+/// The sphere around the nearer part of what is visible, which fills most of the picture: a plane that runs to the
+/// horizon does not thin out the photons where they are looked at. Around everything where nothing is visible, or where
+/// that is most of the scene.
 pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleRegion {
     let bounds = world.bounds();
     let whole = if bounds.is_empty() {
@@ -154,13 +156,12 @@ pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleR
     let middle = |axis: usize| {
         let mut values: Vec<f32> = points.iter().map(|p| p.position[axis]).collect();
         values.sort_unstable_by(f32::total_cmp);
-        // Middle of the inner 90 %: one far corner does not drag the region along.
-        0.5 * (values[values.len() / 20] + values[values.len() - 1 - values.len() / 20])
+        values[values.len() / 2]
     };
     let center = Vec3::new(middle(0), middle(1), middle(2));
     let mut distances: Vec<f32> = points.iter().map(|p| (p.position - center).length()).collect();
     distances.sort_unstable_by(f32::total_cmp);
-    let radius = distances[distances.len() * 95 / 100] * 1.1;
+    let radius = distances[distances.len() * 6 / 10] * 1.1;
     if radius > 0.7 * whole.radius || !(radius > 0.0) { whole } else { VisibleRegion { center, radius } }
 }
 

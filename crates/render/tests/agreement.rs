@@ -127,10 +127,10 @@ fn blocks(pixels: &[Vec3]) -> Vec<Vec3> {
 fn photons_find_the_light_of_the_path_tracer() {
     for (name, scene) in [("box", box_scene(0.6)), ("outdoor", outdoor_scene()), ("smooth", smooth_scene())] {
         let world = world(scene);
-        let reference = blocks(&render(&world, Settings { spp: 64, ..settings(Mode::Path) }, 96).0);
+        let reference = blocks(&render(&world, Settings { spp: 32, ..settings(Mode::Path) }, 64).0);
         let total: f32 = reference.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
-        for (mode, passes) in [(Mode::Progressive, 96), (Mode::Gather, 16)] {
-            let photons = if mode == Mode::Gather { 1_500_000 } else { 60_000 };
+        for (mode, passes) in [(Mode::Progressive, 64), (Mode::Gather, 16)] {
+            let photons = if mode == Mode::Gather { 1_500_000 } else { 80_000 };
             let settings = Settings { photons: Some(photons), spp: 4, ..settings(mode) };
             let found = blocks(&render(&world, settings, passes).0);
             for (i, (a, b)) in found.iter().zip(&reference).enumerate() {
