@@ -3,6 +3,7 @@
 //! files a made-up room of about 60,000 triangles is measured. Rates are those of one thread, the median over rounds.
 #![allow(clippy::print_stdout)] // It exists to print.
 
+use libm::{cosf, sinf};
 use photinus_accel::{BuildOptions, DEFAULT_STRUCTURE, Kernel, RayCounters, Structure, build};
 use photinus_geometry::{Frame, Hit, Primitives, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
@@ -75,8 +76,8 @@ fn made_up_room() -> Primitives {
         let radius = 0.25 + 0.5 * s.next_1d();
         patch(&mut out, 30, 20, |u, v| {
             let (phi, theta) = (u * std::f32::consts::TAU, v * std::f32::consts::PI);
-            let r = radius * (1.0 + 0.1 * (7.0 * phi).sin() * (5.0 * theta).sin());
-            center + r * Vec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin())
+            let r = radius * (1.0 + 0.1 * sinf(7.0 * phi) * sinf(5.0 * theta));
+            center + r * Vec3::new(sinf(theta) * cosf(phi), cosf(theta), sinf(theta) * sinf(phi))
         });
     }
     out
@@ -105,7 +106,7 @@ fn bounce(primitives: &Primitives, rays: &[Ray], hits: &[Hit], seed: u64) -> Vec
         let normal = if normal.dot(ray.dir) > 0.0 { -normal } else { normal };
         let [u, v] = Sampler::new(seed, StreamKind::Test, 0, i as u32).next_2d();
         let (r, phi) = (u.sqrt(), v * std::f32::consts::TAU);
-        let local = Vec3::new(r * phi.cos(), r * phi.sin(), (1.0 - u).sqrt());
+        let local = Vec3::new(r * cosf(phi), r * sinf(phi), (1.0 - u).sqrt());
         let dir = Frame::from_normal(normal).to_world(local);
         out.push(Ray { t_min: 1e-4, ..Ray::new(ray.at(hit.t), dir) });
     }

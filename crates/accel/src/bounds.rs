@@ -24,6 +24,16 @@ pub fn pad(b: Aabb) -> Aabb {
     Aabb { min: down(b.min - pad), max: up(b.max + pad) }
 }
 
+/// Edge lengths of `b` in doubles, which no scene's areas leave; zero for the empty box.
+pub(crate) fn size_f64(b: &Aabb) -> [f64; 3] {
+    std::array::from_fn(|k| (f64::from(b.max[k]) - f64::from(b.min[k])).max(0.0))
+}
+
+/// Half the surface area of a box of these edge lengths.
+pub(crate) fn half_area_f64([x, y, z]: [f64; 3]) -> f64 {
+    x * y + y * z + z * x
+}
+
 /// The padded bounds of primitive `id`; `None` where no ray can hit it (no area, no radius, not finite).
 pub fn padded_bounds(primitives: &Primitives, id: usize) -> Option<Aabb> {
     let hittable = match id.checked_sub(primitives.triangle_count()) {

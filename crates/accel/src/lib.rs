@@ -12,6 +12,7 @@ pub mod structures {
     //! The members: one acceleration structure a file or folder.
 
     pub mod brute_force;
+    pub mod kd_tree;
     pub mod wide_bvh;
 }
 

@@ -2,7 +2,7 @@
 
 use crate::options::{BuildError, BuildOptions};
 use crate::structure::Structure;
-use crate::structures::{brute_force, wide_bvh};
+use crate::structures::{brute_force, kd_tree, wide_bvh};
 use photinus_geometry::{MAX_PRIMITIVES, Primitives};
 use photinus_intersect::{LeafTester, METHODS, find_method};
 use std::sync::Arc;
@@ -28,6 +28,7 @@ pub const STRUCTURES: &[StructureInfo] = &[
         source: wide_bvh::SOURCE,
         build: wide_bvh::build,
     },
+    StructureInfo { name: kd_tree::NAME, summary: kd_tree::SUMMARY, source: kd_tree::SOURCE, build: kd_tree::build },
     StructureInfo {
         name: brute_force::NAME,
         summary: brute_force::SUMMARY,

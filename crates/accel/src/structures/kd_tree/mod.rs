@@ -1,0 +1,284 @@
+//! The kd-tree of the thesis (section 3.1.1): split planes by the surface-area heuristic with free costs, three ways to
+//! choose split candidates, cost as the only reason to stop, ordered recursive traversal.
+//!
+//! Memory and time stay bounded on any input: no tree is deeper than 96 levels or holds more than 32 leaves and
+//! references for each primitive. Trees by sensible costs come nowhere near either.
+
+mod build;
+mod traverse;
+
+use crate::bounds::{half_area_f64, size_f64};
+use crate::list::leaf_tester;
+use crate::options::{BuildError, BuildOptions};
+use crate::structure::{RayCounters, Structure, StructureSummary};
+use build::{Built, Rule};
+use photinus_geometry::{Aabb, Hit, Primitives, Ray};
+use photinus_intersect::LeafTester;
+use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
+use traverse::LeafVisit;
+
+/// The name on the command line.
+pub const NAME: &str = "kd-tree";
+/// One line for the help.
+pub const SUMMARY: &str = "kd-tree by the surface-area heuristic, as in the thesis";
+/// Where it was published.
+pub const SOURCE: &str = "Havran, PhD thesis, 2000; MacDonald, Booth, The Visual Computer 6, 1990";
+
+/// A node in eight bytes: a split plane, whose child below follows the node, or a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct KdNode {
+    /// Bits of the plane's position; the leaf's first reference.
+    data: u32,
+    /// Axis of the plane, or 3, in the lowest two bits; above them the index of the child above, or the number of
+    /// references.
+    tag: u32,
+}
+
+/// What a node says.
+#[derive(Clone, Debug, PartialEq)]
+enum Unpacked {
+    Interior { axis: usize, position: f32, above: usize },
+    Leaf { refs: Range<usize> },
+}
+
+impl KdNode {
+    #[inline(always)]
+    fn unpack(self) -> Unpacked {
+        let (axis, rest) = ((self.tag & 3) as usize, (self.tag >> 2) as usize);
+        if axis < 3 {
+            Unpacked::Interior { axis, position: f32::from_bits(self.data), above: rest }
+        } else {
+            Unpacked::Leaf { refs: self.data as usize..self.data as usize + rest }
+        }
+    }
+}
+
+/// A leaf that a ray pierces: so many references from a start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeafRange {
+    /// First place in [`KdTree::refs`].
+    pub start: u32,
+    /// References.
+    pub count: u32,
+}
+
+/// A node of the tree with its cell, as [`KdTree::visit_cells`] hands it out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KdCell {
+    /// Levels below the root.
+    pub depth: u32,
+    /// The cell.
+    pub bounds: Aabb,
+    /// What is there.
+    pub kind: KdCellKind,
+}
+
+/// What a cell is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KdCellKind {
+    /// Split by a plane.
+    Interior {
+        /// Axis that the plane is perpendicular to: 0 to 2.
+        axis: usize,
+        /// Where it cuts the axis, in scene units.
+        position: f32,
+    },
+    /// A leaf, perhaps without primitives.
+    Leaf(LeafRange),
+}
+
+/// The tree.
+pub struct KdTree {
+    bounds: Aabb,
+    nodes: Vec<KdNode>,
+    refs: Vec<u32>,
+    cost_ratio: f64,
+    tester: Box<dyn LeafTester>,
+}
+
+/// See [`crate::build`].
+pub fn build(primitives: Arc<Primitives>, options: &BuildOptions) -> Result<Box<dyn Structure>, BuildError> {
+    Ok(Box::new(KdTree::new(&primitives, options)?))
+}
+
+impl KdTree {
+    /// Builds the tree over primitives whose vertex indices are in range.
+    ///
+    /// # Errors
+    /// An unknown method, a cost that is negative or not finite, a triangle cost of zero, no candidates.
+    pub fn new(primitives: &Primitives, options: &BuildOptions) -> Result<Self, BuildError> {
+        let rule = rule(options)?;
+        let tester = leaf_tester(primitives, options)?;
+        let (built, bounds) = build::build(primitives, rule);
+        let mut tree = Self { bounds, nodes: Vec::new(), refs: Vec::new(), cost_ratio: rule.cost_ratio, tester };
+        tree.flatten(built);
+        Ok(tree)
+    }
+
+    /// Appends a subtree.
+    fn flatten(&mut self, built: Built) {
+        let place = self.nodes.len();
+        match built {
+            Built::Leaf(ids) => {
+                self.nodes.push(KdNode { data: self.refs.len() as u32, tag: (ids.len() as u32) << 2 | 3 });
+                self.refs.extend(ids);
+            }
+            Built::Split { axis, position, children } => {
+                self.nodes.push(KdNode { data: position.to_bits(), tag: axis as u32 });
+                let [below, above] = *children;
+                self.flatten(below);
+                self.nodes[place].tag |= (self.nodes.len() as u32) << 2;
+                self.flatten(above);
+            }
+        }
+    }
+
+    /// Primitive ids of all leaves, one leaf after the other.
+    pub fn refs(&self) -> &[u32] {
+        &self.refs
+    }
+
+    /// Bounds of the root's cell; empty where the tree is.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The leaves with primitives that a ray pierces within its interval, front to back.
+    pub fn leaves(&self, ray: &Ray) -> Vec<LeafRange> {
+        let mut out = Vec::new();
+        self.walk(
+            ray,
+            || {},
+            |visit| {
+                out.push(LeafRange { start: visit.refs.start as u32, count: visit.refs.len() as u32 });
+                ControlFlow::Continue(())
+            },
+        );
+        out
+    }
+
+    /// Hands out every node with its cell, parents before children and below before above.
+    pub fn visit_cells(&self, mut visit: impl FnMut(&KdCell)) {
+        let mut waiting = vec![(0, 0, self.bounds)];
+        while let Some((index, depth, bounds)) = waiting.pop() {
+            let kind = match self.nodes[index].unpack() {
+                Unpacked::Interior { axis, position, above } => {
+                    let (mut below_bounds, mut above_bounds) = (bounds, bounds);
+                    below_bounds.max[axis] = position;
+                    above_bounds.min[axis] = position;
+                    waiting.push((above, depth + 1, above_bounds));
+                    waiting.push((index + 1, depth + 1, below_bounds));
+                    KdCellKind::Interior { axis, position }
+                }
+                Unpacked::Leaf { refs } => {
+                    KdCellKind::Leaf(LeafRange { start: refs.start as u32, count: refs.len() as u32 })
+                }
+            };
+            visit(&KdCell { depth, bounds, kind });
+        }
+    }
+
+    fn closest(&self, ray: &Ray, counters: &mut RayCounters) -> Hit {
+        let mut best = Hit::MISS;
+        let mut nodes = 0;
+        let mut leaf = |LeafVisit { refs, exit }| {
+            let work = self.tester.closest_hit(ray, &self.refs[refs.clone()], &mut best);
+            counters.add_leaf(refs.len(), work);
+            if best.t < exit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        self.walk(ray, || nodes += 1, &mut leaf);
+        counters.traversal.rays += 1;
+        counters.traversal.nodes_visited += nodes;
+        best
+    }
+
+    fn any(&self, ray: &Ray, counters: &mut RayCounters) -> bool {
+        let mut found = false;
+        let mut nodes = 0;
+        let mut leaf = |LeafVisit { refs, .. }| {
+            let (any, work) = self.tester.any_hit(ray, &self.refs[refs.clone()]);
+            counters.add_leaf(refs.len(), work);
+            found = any;
+            if any { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        self.walk(ray, || nodes += 1, &mut leaf);
+        counters.traversal.rays += 1;
+        counters.traversal.nodes_visited += nodes;
+        found
+    }
+}
+
+/// Checks the options.
+fn rule(options: &BuildOptions) -> Result<Rule, BuildError> {
+    let bad = |option, value: String, expected| Err(BuildError::BadOption { option, value, expected });
+    let (node, triangle) = (options.node_cost, options.triangle_cost);
+    if !(node >= 0.0 && node.is_finite()) {
+        return bad("the node cost", node.to_string(), "zero or more");
+    }
+    if !(triangle > 0.0 && triangle.is_finite()) {
+        return bad("the triangle cost", triangle.to_string(), "more than zero");
+    }
+    if !(1..=100_000).contains(&options.candidate_count) {
+        return bad("the number of split candidates", options.candidate_count.to_string(), "1 to 100000");
+    }
+    // Rounded to a float, so that equal ratios of different costs are equal.
+    let cost_ratio = f64::from((node / triangle) as f32);
+    Ok(Rule { cost_ratio, candidates: options.candidates, count: options.candidate_count as usize })
+}
+
+impl Structure for KdTree {
+    fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.closest_hit_counted(rays, hits, &mut RayCounters::default());
+    }
+
+    fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {
+        self.any_hit_counted(rays, occluded, &mut RayCounters::default());
+    }
+
+    fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), hits.len());
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.closest(ray, counters);
+        }
+    }
+
+    fn any_hit_counted(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), occluded.len());
+        for (ray, hit) in rays.iter().zip(occluded) {
+            *hit = self.any(ray, counters);
+        }
+    }
+
+    /// The cost is that of the heuristic, in triangle tests: nodes count for the ratio of the costs.
+    fn summary(&self) -> StructureSummary {
+        let mut out = StructureSummary {
+            name: NAME,
+            references: self.refs.len() as u64,
+            bytes: (size_of_val(&self.nodes[..]) + size_of_val(&self.refs[..])) as u64 + self.tester.bytes(),
+            ..StructureSummary::default()
+        };
+        let half_area = |b: &Aabb| half_area_f64(size_f64(b));
+        let whole = half_area(&self.bounds);
+        self.visit_cells(|cell| {
+            out.depth = out.depth.max(cell.depth);
+            let share = if whole > 0.0 { half_area(&cell.bounds) / whole } else { 0.0 };
+            match cell.kind {
+                KdCellKind::Interior { .. } => {
+                    out.nodes += 1;
+                    out.sah_cost += share * self.cost_ratio;
+                }
+                KdCellKind::Leaf(LeafRange { count: 0, .. }) => out.empty_leaves += 1,
+                KdCellKind::Leaf(leaf) => {
+                    out.leaves += 1;
+                    out.sah_cost += share * f64::from(leaf.count);
+                }
+            }
+        });
+        out.prims_per_leaf = if out.leaves == 0 { 0.0 } else { out.references as f64 / out.leaves as f64 };
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests;
