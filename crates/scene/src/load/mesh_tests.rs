@@ -40,7 +40,7 @@ const NASTY: &[(&str, Verdict)] = &[
     ("obj/missing_material_file.obj", Warns(36, "material \"white\" is in no library: read as grey")),
     ("obj/mtl filename with whitespace issue46.obj", Warns(12, "invalid file with spaces.mtl: no such file")),
     ("obj/nancolor.obj", Warns(12, "nancolor.obj:7: 1 vertex colour(s) not finite: read as white")),
-    ("obj/notenoughindices.obj", Warns(1, "notenoughindices.obj:8: 1 face(s) with fewer than 3 corners: skipped")),
+    ("obj/notenoughindices.obj", Warns(1, "notenoughindices.obj:9: 1 face(s) with fewer than 3 corners: skipped")),
     ("obj/number_formats.obj", Refused("number_formats.obj:11: \"3.1+e2\" is not a number")),
     ("obj/obj_with_no_face_in_chunk.obj", Loads(1)),
     ("obj/test-nan.obj", Refused("test-nan.obj:12: vertex (NaN, NaN, NaN) is not finite")),
