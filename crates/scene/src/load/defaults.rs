@@ -1,5 +1,6 @@
 //! What a scene gets that its file does not say: camera, film, light.
 
+use super::framing::default_camera;
 use super::{Context, Draft, LoadError, Place};
 use crate::{
     Camera, EnvironmentLight, FilmSettings, Filter, FovAxis, IntegratorHint, IntegratorKind, Light, Projection, Scene,
@@ -33,7 +34,7 @@ pub(super) fn complete(path: &Path, draft: Draft, context: &mut Context<'_>) -> 
         Some(camera) => camera,
         None => {
             context.warn(&place, "no camera: one was made that frames the scene");
-            framing_camera(scene.bounds())
+            default_camera(&scene)
         }
     };
     if scene.lights.is_empty() && scene.shapes.iter().all(|s| s.emission.is_none()) {

@@ -5,6 +5,7 @@ mod context;
 mod defaults;
 mod draft;
 mod error;
+mod framing;
 mod inflate;
 pub mod list;
 mod mitsuba;
