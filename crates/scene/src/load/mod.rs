@@ -13,6 +13,7 @@ mod mtl;
 mod normals;
 mod obj;
 mod options;
+mod orient;
 mod ply;
 mod polygon;
 mod serialized;

@@ -16,6 +16,8 @@ pub(in crate::load) struct Converted {
     pub(in crate::load) material: MaterialId,
     /// Radiance, if the material shines.
     pub(in crate::load) emission: Option<ColorInput>,
+    /// Light bends at its surface, so that inside and outside matter.
+    pub(in crate::load) is_glass: bool,
 }
 
 /// Index of a coat, and of glass whose file gives none.
@@ -32,9 +34,10 @@ pub(in crate::load) fn convert(
 ) -> Converted {
     let mut c = Converter { raw, library, draft, context };
     c.warn_of_unused();
+    let is_glass = c.is_glass();
     let base = match raw.illum {
         _ if c.is_physically_based() => c.principled(),
-        Some(4 | 6 | 7 | 9) if c.glass_ior().is_some() => c.glass(),
+        _ if is_glass => c.glass(),
         Some(3 | 5) if raw.ks.is_some_and(|ks| ks.max_element() > 0.0) => c.mirror(),
         Some(0 | 1) => c.diffuse_only(),
         Some(10) => {
@@ -49,7 +52,7 @@ pub(in crate::load) fn convert(
     };
     let material = c.tilted_normals(base);
     let material = c.opened(material);
-    Converted { material, emission: c.emission() }
+    Converted { material, emission: c.emission(), is_glass }
 }
 
 struct Converter<'a, 'c> {
@@ -206,6 +209,10 @@ impl<'c> Converter<'_, 'c> {
         }
     }
 
+    fn is_glass(&self) -> bool {
+        matches!(self.raw.illum, Some(4 | 6 | 7 | 9)) && self.glass_ior().is_some()
+    }
+
     /// `illum 4`, `6`, `7` and `9`. Fresnel's equations say how much is reflected, not `Ks`.
     fn glass(&mut self) -> MaterialId {
         let mut filter = self.raw.tf.unwrap_or(Vec3::ONE).min(Vec3::ONE);
@@ -230,7 +237,7 @@ impl<'c> Converter<'_, 'c> {
     /// The extension for physically based materials: Pr, Pm, Ps, Pc, Pcr, aniso.
     fn principled(&mut self) -> MaterialId {
         let raw = self.raw;
-        let glass = matches!(raw.illum, Some(4 | 6 | 7 | 9)) && self.glass_ior().is_some();
+        let glass = self.is_glass();
         let unit = |x: Option<f32>, default: f32| x.unwrap_or(default).clamp(0.0, 1.0);
         // The model's roughness is the square root of alpha (Burley 2012, section 5.4).
         let roughness_default = if raw.ns.is_some() { self.alpha().sqrt() } else { 0.5 };
@@ -285,9 +292,11 @@ impl<'c> Converter<'_, 'c> {
         {
             return self.add(".mask", Material::Mask { opacity, nested });
         }
-        let is_glass = matches!(raw.illum, Some(4 | 6 | 7 | 9)) && self.glass_ior().is_some();
+        if self.is_glass() {
+            return nested;
+        }
         let opacity = self.opacity();
-        if opacity >= 1.0 || is_glass {
+        if opacity >= 1.0 {
             return nested;
         }
         self.add(".mask", Material::Mask { opacity: FloatInput::Constant(opacity), nested })

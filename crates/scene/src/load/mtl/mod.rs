@@ -18,3 +18,6 @@ pub(super) struct Library {
     /// Its content.
     pub(super) raw: RawLibrary,
 }
+
+#[cfg(test)]
+mod tests;

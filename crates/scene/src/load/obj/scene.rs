@@ -1,6 +1,7 @@
 //! An OBJ file as a scene of its own: parts with the materials of its libraries.
 
 use super::super::mtl::{self, Converted, Library};
+use super::super::orient::{face_along_normals, face_outwards};
 use super::super::{Context, Draft, LoadError, Place};
 use super::{MissingNormals, ObjPart};
 use crate::{ColorInput, Geometry, Material, Shape, Texture, TextureKind};
@@ -26,9 +27,17 @@ pub fn load(path: &Path, context: &mut Context<'_>) -> Result<Draft, LoadError> 
     let libraries = read_libraries(path, &file.libraries, context);
     let mut materials = Materials { path, libraries, used: HashMap::new(), missing: HashSet::new(), plain: [None; 2] };
     let mut draft = Draft::default();
-    for part in file.parts {
+    for mut part in file.parts {
         context.add_triangles(&place, part.mesh.triangles.len() as u64)?;
-        let Converted { material, emission } = materials.of_part(&part, &mut draft, context);
+        let Converted { material, emission, is_glass } = materials.of_part(&part, &mut draft, context);
+        let turned = face_along_normals(&mut part.mesh);
+        if turned > 0 {
+            context
+                .warn(&place, format!("part \"{}\": {turned} face(s) turned to the side of their normals", part.name));
+        }
+        if is_glass && face_outwards(&mut part.mesh) {
+            context.warn(&place, format!("part \"{}\" is glass inside out: turned over", part.name));
+        }
         draft.shapes.push(Shape { name: part.name, geometry: Geometry::Mesh(part.mesh), material, emission });
     }
     Ok(draft)
@@ -141,5 +150,5 @@ pub(in crate::load) fn plain_material(draft: &mut Draft, colored: bool) -> Conve
     };
     let inner = draft.add_material(format!("{name}.side"), Material::Diffuse { reflectance });
     let material = draft.add_material(name, Material::TwoSided { front: inner, back: inner });
-    Converted { material, emission: None }
+    Converted { material, emission: None, is_glass: false }
 }

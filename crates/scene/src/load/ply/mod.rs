@@ -7,6 +7,7 @@ mod source;
 use super::inflate::{gunzip, is_gzip};
 use super::normals::creased_normals;
 use super::obj::plain_material;
+use super::orient::face_along_normals;
 use super::text::Fault;
 use super::{Context, Draft, LoadError, Place};
 use crate::{Geometry, Mesh, Shape};
@@ -46,6 +47,7 @@ pub fn load(path: &Path, context: &mut Context<'_>) -> Result<Draft, LoadError> 
     if mesh.normals.is_empty() {
         creased_normals(&mut mesh, CREASE_DEGREES);
     }
+    face_along_normals(&mut mesh);
     context.add_triangles(&place, mesh.triangles.len() as u64)?;
     let mut draft = Draft::default();
     let material = plain_material(&mut draft, !mesh.colors.is_empty()).material;
