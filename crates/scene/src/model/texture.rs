@@ -71,6 +71,14 @@ pub enum BitmapPixels {
 }
 
 impl Bitmap {
+    /// Whether any pixel is not fully opaque.
+    pub fn has_holes(&self) -> bool {
+        match &self.pixels {
+            BitmapPixels::Rgba8 { data, .. } => data.iter().any(|p| p[3] < 255),
+            BitmapPixels::RgbaF32(data) => data.iter().any(|p| p[3] < 1.0),
+        }
+    }
+
     /// Bytes of the pixels.
     pub fn bytes(&self) -> usize {
         match &self.pixels {

@@ -43,6 +43,9 @@ impl Writer<'_> {
                 self.xml.value("string", "wrap_mode", wrap);
                 if *alpha {
                     self.xml.value("string", "channel", "a");
+                } else if bitmap.has_holes() {
+                    // Said, because a mask would take the holes for its opacity.
+                    self.xml.value("string", "channel", "all");
                 }
                 // Mitsuba's v runs down the picture.
                 self.to_uv(&(flip_v() * to_uv * flip_v()));

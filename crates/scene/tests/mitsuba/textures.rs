@@ -148,3 +148,36 @@ fn circles_are_refused() {
     );
     assert!(e.contains("circle"), "{e}");
 }
+
+#[test]
+fn a_mask_takes_the_holes_of_its_picture() {
+    let folder = Folder::new();
+    // 32 bits a pixel, 8 of them alpha.
+    let mut tga = vec![0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28];
+    tga.extend([255, 255, 255, 0, 10, 20, 30, 255]);
+    folder.write("leaf.tga", tga);
+    let body = |channel: &str| {
+        format!(
+            "<texture type='bitmap' id='leaf'><string name='filename' value='leaf.tga'/>{channel}</texture>\
+             <bsdf type='mask' id='m'><ref name='opacity' id='leaf'/><bsdf type='diffuse'><ref name='reflectance' id='leaf'/>\
+             </bsdf></bsdf><bsdf type='mask'><ref name='opacity' id='leaf'/><ref id='d'/></bsdf><bsdf type='diffuse' id='d'/>"
+        )
+    };
+    let alphas = |s: &Scene| -> Vec<bool> {
+        s.textures.iter().map(|t| matches!(t.kind, TextureKind::Bitmap { alpha: true, .. })).collect()
+    };
+    let s = folder.load(&body("")).unwrap();
+    clean(&s);
+    assert_eq!(alphas(&s), [false, true]);
+    let opacities: Vec<_> = s
+        .materials
+        .iter()
+        .filter_map(|m| match &m.material {
+            Material::Mask { opacity, .. } => Some(*opacity),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(opacities, [photinus_scene::FloatInput::Texture(photinus_scene::TextureId(1)); 2]);
+    let s = folder.load(&body("<string name='channel' value='all'/>")).unwrap();
+    assert_eq!(alphas(&s), [false]);
+}

@@ -69,6 +69,7 @@ impl<'t> Importer<'t, '_, '_> {
             }
             "mask" => {
                 let opacity = self.float_or(&props, "opacity", 0.5)?;
+                let opacity = self.opacity(&props, opacity);
                 Built::New(Material::Mask { opacity, nested: one("mask")? })
             }
             "blendbsdf" => {

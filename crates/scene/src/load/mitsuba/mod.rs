@@ -46,6 +46,7 @@ pub fn load(path: &Path, context: &mut Context<'_>) -> Result<Draft, LoadError> 
         draft: Draft::default(),
         materials: HashMap::new(),
         textures: HashMap::new(),
+        opacities: HashMap::new(),
         groups: HashMap::new(),
         default_materials: [None; 2],
         depth: 0,
@@ -72,6 +73,8 @@ struct Importer<'t, 'c, 'o> {
     materials: HashMap<NodeId, State<MaterialId>>,
     /// By element and whether it is read as linear data; none: unreadable, mid-grey.
     textures: HashMap<(NodeId, bool), State<Option<TextureId>>>,
+    /// Alpha channels used as opacity, by texture element.
+    opacities: HashMap<NodeId, TextureId>,
     /// Shapes of shape groups, in the group's own space.
     groups: HashMap<NodeId, State<Arc<Vec<Shape>>>>,
     /// What shapes and emitters without a BSDF are made of.

@@ -78,6 +78,26 @@ impl<'t> Importer<'t, '_, '_> {
         Ok(self.float_input(props, name)?.unwrap_or(FloatInput::Constant(default)))
     }
 
+    /// The opacity of a mask: where it is a picture with holes of its own (an alpha channel below 1) and the file does
+    /// not say which channel is meant, the holes are, as the exporters that write such files intend.
+    pub(super) fn opacity(&mut self, props: &Props<'t>, given: FloatInput) -> FloatInput {
+        let (FloatInput::Texture(id), Some(element)) = (given, props.get("opacity")) else { return given };
+        let texture = &self.draft.textures[id.0 as usize];
+        let TextureKind::Bitmap { bitmap, filter, wrap, alpha: false } = &texture.kind else { return given };
+        let says_channel = self.props(element).is_ok_and(|p| p.has("channel"));
+        if says_channel || !bitmap.has_holes() {
+            return given;
+        }
+        if let Some(&texture) = self.opacities.get(&element) {
+            return FloatInput::Texture(texture);
+        }
+        let kind = TextureKind::Bitmap { bitmap: bitmap.clone(), filter: *filter, wrap: *wrap, alpha: true };
+        let texture = Texture { name: format!("{}-alpha", texture.name), kind, to_uv: texture.to_uv };
+        let texture = self.draft.add_texture(texture);
+        self.opacities.insert(element, texture);
+        FloatInput::Texture(texture)
+    }
+
     fn texture_of(
         &mut self,
         props: &Props<'t>,
