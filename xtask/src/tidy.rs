@@ -36,6 +36,7 @@ struct Rule {
 const RULES: &[Rule] = &[
     Rule { name: "every source file begins with a sentence of purpose", check: sources::purpose },
     Rule { name: "no file is longer than 600 lines", check: sources::length },
+    Rule { name: "every source file belongs to a module", check: sources::orphans },
     Rule { name: "no unfinished or switched-off code", check: sources::unfinished },
     Rule { name: "no fused multiply-add", check: sources::fused },
     Rule { name: "no paths of one machine", check: sources::machine_paths },

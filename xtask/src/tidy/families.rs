@@ -10,9 +10,38 @@ struct Family {
     folder: &'static str,
     /// The list: every member's file name occurs in its code.
     list: &'static str,
+    /// Files and folders in between that are no members.
+    helpers: &'static [&'static str],
 }
 
-const FAMILIES: &[Family] = &[Family { folder: "crates/photons/src/searches", list: "crates/photons/src/list.rs" }];
+const FAMILIES: &[Family] = &[
+    Family { folder: "crates/intersect/src/methods", list: "crates/intersect/src/list.rs", helpers: &[] },
+    Family { folder: "crates/accel/src/structures", list: "crates/accel/src/list.rs", helpers: &[] },
+    Family { folder: "crates/photons/src/searches", list: "crates/photons/src/list.rs", helpers: &[] },
+    Family { folder: "crates/image/src/tonemap", list: "crates/image/src/tonemap/list.rs", helpers: &[] },
+    Family { folder: "crates/render/src/bsdf/members", list: "crates/render/src/bsdf/members/mod.rs", helpers: &[] },
+    Family {
+        folder: "crates/scene/src/load",
+        list: "crates/scene/src/load/list.rs",
+        helpers: &[
+            "bitmap",
+            "context",
+            "defaults",
+            "draft",
+            "error",
+            "mtl",
+            "normals",
+            "options",
+            "serialized",
+            "text",
+        ],
+    },
+    Family {
+        folder: "crates/scene/src/builtin",
+        list: "crates/scene/src/builtin/list.rs",
+        helpers: &["build", "spectra", "tests"],
+    },
+];
 
 /// Checks every family both ways.
 pub fn check(tree: &Tree) -> Vec<Finding> {
@@ -32,7 +61,11 @@ fn check_against(tree: &Tree, families: &[Family]) -> Vec<Finding> {
         if members.is_empty() {
             findings.push(Finding::new(family.folder, 0, "a family without members"));
         }
-        for member in members.iter().filter(|member| !listed(member)) {
+        for helper in family.helpers.iter().filter(|helper| !members.contains(helper)) {
+            findings.push(Finding::new(family.folder, 0, format!("the helper `{helper}` does not exist")));
+        }
+        let members = members.iter().filter(|member| !family.helpers.contains(member));
+        for member in members.filter(|member| !listed(member)) {
             findings.push(Finding::new(family.folder, 0, format!("`{member}` is not on the list {}", family.list)));
         }
     }
@@ -64,12 +97,23 @@ fn has_name(code: &str, name: &str) -> bool {
 mod tests {
     use super::*;
 
-    const FAMILY: &[Family] = &[Family { folder: "a/methods", list: "a/list.rs" }];
+    const FAMILY: &[Family] = &[Family { folder: "a/methods", list: "a/list.rs", helpers: &["parts"] }];
 
     fn found(list: &str) -> Vec<String> {
-        let files =
-            [("a/list.rs", list), ("a/methods/mod.rs", ""), ("a/methods/badouel.rs", ""), ("a/methods/wide/x.rs", "")];
+        let files = [
+            ("a/list.rs", list),
+            ("a/methods/mod.rs", ""),
+            ("a/methods/badouel.rs", ""),
+            ("a/methods/parts.rs", ""),
+            ("a/methods/wide/x.rs", ""),
+        ];
         check_against(&Tree::of(&files), FAMILY).into_iter().map(|finding| finding.what).collect()
+    }
+
+    #[test]
+    fn a_helper_that_is_gone_is_found() {
+        let files = [("a/list.rs", "badouel"), ("a/methods/badouel.rs", "")];
+        assert_eq!(check_against(&Tree::of(&files), FAMILY).len(), 1);
     }
 
     #[test]
@@ -78,6 +122,6 @@ mod tests {
         assert_eq!(found("use m::badouel;\n").len(), 1);
         assert_eq!(found("// badouel\nuse m::{badouel_2, wide};\n").len(), 1, "a comment or a longer name is no entry");
         assert_eq!(check_against(&Tree::of(&[]), FAMILY).len(), 1, "a missing list is found");
-        assert_eq!(check_against(&Tree::of(&[("a/list.rs", "")]), FAMILY).len(), 1, "an empty family is found");
+        assert_eq!(check_against(&Tree::of(&[("a/list.rs", "")]), FAMILY).len(), 2, "an empty family is found");
     }
 }

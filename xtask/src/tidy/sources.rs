@@ -31,6 +31,40 @@ pub fn length(tree: &Tree) -> Vec<Finding> {
         .collect()
 }
 
+/// A source file that no module declares is never compiled.
+pub fn orphans(tree: &Tree) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for file in tree.rust() {
+        let Some((folder, module)) = module_of(&file.path) else { continue };
+        // Modules are declared in the folder's own file, or inline in that of the folder above.
+        let above = folder.rsplit_once('/').map_or("", |(above, _)| above);
+        let declared = [folder, above].iter().any(|place| {
+            let owners = ["/mod.rs", "/lib.rs", "/main.rs", ".rs"].map(|ending| format!("{place}{ending}"));
+            owners.iter().filter_map(|owner| tree.file(owner)).any(|owner| {
+                let lines = split(&owner.text);
+                let declaration = format!("mod {module};");
+                lines.iter().any(|line| line.code.trim_start_matches("pub(crate) ").trim().ends_with(&declaration))
+            })
+        });
+        if !declared {
+            findings.push(Finding::new(&file.path, 0, "no module declares this file"));
+        }
+    }
+    findings
+}
+
+/// Folder and name of the module in a file below some `src`; none for roots and for files elsewhere.
+fn module_of(path: &str) -> Option<(&str, &str)> {
+    let inside = path.split_once("/src/")?.1;
+    let (folder, name) = path.rsplit_once('/')?;
+    let name = name.strip_suffix(".rs")?;
+    match name {
+        "lib" | "main" if !inside.contains('/') => None,
+        "mod" => folder.rsplit_once('/'),
+        _ => Some((folder, name)),
+    }
+}
+
 /// Marks of work left undone, and tests that are switched off.
 pub fn unfinished(tree: &Tree) -> Vec<Finding> {
     const CODE: &[&str] = &["todo!", "unimplemented!", "dbg!", "#[ignore"];
@@ -136,6 +170,14 @@ mod tests {
         assert_eq!(lines_found(purpose, "a.rs", "fn f() {}\n"), [1]);
         assert_eq!(lines_found(purpose, "a.rs", "//! Nothing\nfn f() {}\n"), [1]);
         assert!(lines_found(purpose, "a.rs", "//! Adds\n//! numbers.\nfn f() {}\n").is_empty());
+    }
+
+    #[test]
+    fn files_that_no_module_declares_are_found() {
+        let lib = ("c/src/lib.rs", "pub mod a;\nmod b { pub mod inner; }\n// mod lost;\n");
+        let files = [lib, ("c/src/a/mod.rs", "mod part;\n"), ("c/src/a/part.rs", ""), ("c/src/lost.rs", "")];
+        let found = orphans(&Tree::of(&files));
+        assert_eq!(found.iter().map(|f| f.path.as_str()).collect::<Vec<_>>(), ["c/src/lost.rs"]);
     }
 
     #[test]
