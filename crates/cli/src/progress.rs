@@ -3,7 +3,7 @@
 
 use crate::report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use photinus::render::{Phase, Stop};
+use photinus::render::{Phase, Plan, Stop};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -14,20 +14,10 @@ const STEPS: f64 = 1000.0;
 /// Phases of a pass, and the share of it that each is taken for until one has been measured.
 const PHASES: [(Phase, f64); 3] = [(Phase::PhotonPass, 0.3), (Phase::MapBuild, 0.1), (Phase::EyePass, 0.6)];
 
-/// What a pass amounts to, for rates.
-#[derive(Clone, Copy, Debug)]
-pub struct PassSize {
-    /// Eye samples.
-    pub samples: f64,
-    /// Photons emitted; 0 where they are not known or none.
-    pub photons: f64,
-}
-
 /// Shows a render's progress on standard error.
 pub struct Progress {
     display: Display,
     stop: Stop,
-    size: PassSize,
     state: Mutex<State>,
     /// Thousandths of the current phase that have been shown: most reports end here, without a lock.
     shown: AtomicU64,
@@ -46,13 +36,16 @@ struct State {
     pass: u32,
     /// Estimated error after the latest pass.
     error: Option<f64>,
+    /// Photons and eye samples of a pass, for rates; 0 before they are known.
+    photons: f64,
+    samples: f64,
     /// Seconds of the latest of each of [`PHASES`].
     seconds: [Option<f64>; 3],
 }
 
 impl Progress {
     /// A display for this terminal, or none of it.
-    pub fn new(quiet: bool, stop: Stop, size: PassSize) -> Self {
+    pub fn new(quiet: bool, stop: Stop) -> Self {
         let display = if quiet {
             Display::Quiet
         } else if std::io::stderr().is_terminal() {
@@ -65,8 +58,16 @@ impl Progress {
         } else {
             Display::Lines
         };
-        let state = State { render_began: Instant::now(), phase: None, pass: 0, error: None, seconds: [None; 3] };
-        Self { display, stop, size, state: Mutex::new(state), shown: AtomicU64::new(0) }
+        let state = State {
+            render_began: Instant::now(),
+            phase: None,
+            pass: 0,
+            error: None,
+            photons: 0.0,
+            samples: 0.0,
+            seconds: [None; 3],
+        };
+        Self { display, stop, state: Mutex::new(state), shown: AtomicU64::new(0) }
     }
 
     /// A line that stays; on a terminal it goes above the bar.
@@ -76,6 +77,13 @@ impl Progress {
             Display::Lines => report::note(text),
             Display::Bar(bar) => bar.suspend(|| report::note(text)),
         }
+    }
+
+    /// What a pass amounts to is known now.
+    pub fn planned(&self, plan: &Plan) {
+        let mut state = self.state();
+        self.end_phase(&mut state);
+        (state.photons, state.samples) = (f64::from(plan.photons), plan.samples as f64);
     }
 
     /// A phase begins.
@@ -148,8 +156,8 @@ impl Progress {
             None => format!("pass {}: {}", state.pass + 1, phase.name()),
         }];
         let (amount, what) = match phase {
-            Phase::PhotonPass => (self.size.photons, "photons"),
-            Phase::EyePass => (self.size.samples, "samples"),
+            Phase::PhotonPass => (state.photons, "photons"),
+            Phase::EyePass => (state.samples, "samples"),
             _ => (0.0, ""),
         };
         let seconds = began.elapsed().as_secs_f64();

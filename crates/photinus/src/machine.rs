@@ -23,11 +23,16 @@ pub fn resident() -> Option<Resident> {
     Some(Resident { now_bytes: field(&status, "VmRSS:")?, peak_bytes: field(&status, "VmHWM:")? })
 }
 
-/// A field of proc(5)'s status, which counts in kB of 1024 bytes.
+/// A field of a table of proc(5), which counts in kB of 1024 bytes.
 fn field(status: &str, name: &str) -> Option<u64> {
     let line = status.lines().find_map(|line| line.strip_prefix(name))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kilobytes * 1024)
+}
+
+/// Memory that a program may still take; none where the system does not tell.
+pub fn available_bytes() -> Option<u64> {
+    field(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
 /// The machine that a measurement was made on.

@@ -46,7 +46,12 @@ pub fn orphans(tree: &Tree) -> Vec<Finding> {
                 lines.iter().any(|line| line.code.trim_start_matches("pub(crate) ").trim().ends_with(&declaration))
             })
         });
-        if !declared {
+        // Or by path, from a file beside it.
+        let attribute = format!("#[path = \"{module}.rs\"]");
+        let by_path = tree.rust().any(|other| {
+            other.path.rsplit_once('/').is_some_and(|(place, _)| place == folder) && other.text.contains(&attribute)
+        });
+        if !declared && !by_path {
             findings.push(Finding::new(&file.path, 0, "no module declares this file"));
         }
     }

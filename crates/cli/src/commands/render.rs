@@ -3,11 +3,12 @@
 use crate::args::{Output, RenderArgs};
 use crate::failure::{Failure, Outcome, Result};
 use crate::interrupt::Interrupts;
-use crate::progress::{PassSize, Progress};
+use crate::progress::Progress;
 use crate::report;
 use photinus::names;
 use photinus::render::{
-    Observer, PassState, Phase, Picture, RenderOptions, Session, Settings, Stats, Stop, StopReason, View, Watcher,
+    Observer, PassState, Phase, Picture, Plan, RenderOptions, Rendered, Session, Settings, Stats, Stop, StopReason,
+    View, Watcher,
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
     let opened = begun.elapsed().as_secs_f64();
     let contents = format!("{} triangles, {} spheres", report::count(scene.triangle_count() as u64), spheres(&scene));
     let session = Session::new(scene, options)?;
-    let progress = Progress::new(args.quiet, session.options().stop, pass_size(&session));
+    let progress = Progress::new(args.quiet, session.options().stop);
     progress.line(&format!("scene {}: {contents}, {opened:.2} s", session.scene_name()));
     let structure = session.structure();
     progress.line(&format!(
@@ -43,19 +44,20 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
     for note in session.notes() {
         report::warning(note);
     }
-    progress.line(&format!("memory: {} predicted", report::bytes(session.predict_memory().total_bytes)));
 
     let monitor = Monitor { progress, interrupts, target, saved: Mutex::new(Instant::now()) };
     monitor.interrupts.keep_results();
-    let rendered = session.render(&monitor)?;
+    let Rendered { picture, mut stats } = session.render(&monitor)?;
     monitor.progress.finish();
     let Monitor { progress, target, .. } = monitor;
 
-    if let Some(picture) = &rendered.picture {
+    stats.add_other("load", opened, &session.options().stop);
+    if let Some(picture) = &picture {
+        let writing = Instant::now();
         target.save(picture)?;
+        stats.add_other("write", writing.elapsed().as_secs_f64(), &session.options().stop);
     }
-    let stats = &rendered.stats;
-    let document = Document { output: rendered.picture.is_some().then_some(target.path()), stats };
+    let document = Document { output: picture.is_some().then_some(target.path()), stats: &stats };
     if let Some(path) = &args.stats {
         photinus::write_json(path, &document)?;
     }
@@ -150,15 +152,6 @@ fn spheres(scene: &photinus::Scene) -> u64 {
     photinus::SceneInfo::of(scene).spheres
 }
 
-fn pass_size(session: &Session) -> PassSize {
-    let [_, _, width, height] = session.window();
-    let settings = &session.options().settings;
-    PassSize {
-        samples: f64::from(width) * f64::from(height) * f64::from(settings.spp),
-        photons: settings.photons.map_or(0.0, f64::from),
-    }
-}
-
 /// Where the picture goes.
 struct Target {
     output: Output,
@@ -218,6 +211,15 @@ impl Observer for Monitor {
 }
 
 impl Watcher for Monitor {
+    fn planned(&self, plan: &Plan) {
+        self.progress.planned(plan);
+        let needed = plan.memory.total_bytes;
+        self.progress.line(&format!("memory: {} predicted", report::bytes(needed)));
+        if let Some(available) = photinus::machine::available_bytes().filter(|available| *available < needed) {
+            self.progress.line(&format!("photinus: warning: only {} are free", report::bytes(available)));
+        }
+    }
+
     fn pass_done(&self, state: &PassState<'_>) {
         self.progress.pass_done(state.passes, state.error, state.last);
         let mut saved = self.saved.lock().unwrap_or_else(PoisonError::into_inner);

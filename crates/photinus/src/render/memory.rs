@@ -1,9 +1,9 @@
-//! The most memory that a render will hold, predicted before it starts.
+//! The most memory that a render will hold, predicted before its first pass.
 
-use super::RenderOptions;
+use super::Stop;
 use crate::machine::resident;
 use photinus_accel::StructureSummary;
-use photinus_render::{Aov, Film, FilmLayout, Mode, World};
+use photinus_render::{Renderer, World};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -17,12 +17,14 @@ pub enum Owner {
     Structure,
     /// Pictures and tables of materials.
     Textures,
+    /// Tables that choose lights.
+    Lights,
     /// Photons and what finds them.
     Photons,
     /// Sums of the passes, and the picture while it is written.
     Film,
-    /// The program, its threads and what they work on.
-    Work,
+    /// The program, what its threads work on, and what loading left behind.
+    Program,
 }
 
 /// A prediction.
@@ -34,43 +36,62 @@ pub struct MemoryPrediction {
     pub by_owner: BTreeMap<Owner, u64>,
 }
 
-/// Stored photons per photon emitted where nothing is known of the scene.
-const STORED_PER_EMITTED: f64 = 2.0;
-/// Bytes of a stored photon while its search is built: chunks of the pass, all in order, keys and the search itself.
-const BYTES_PER_PHOTON: f64 = 72.0;
-/// The program, and what a thread works on.
-const PROGRAM_BYTES: u64 = 12 << 20;
-const THREAD_BYTES: u64 = 3 << 20;
-/// Passes where only time or error limit them: the film grows with their logarithm.
-const MANY_PASSES: u32 = 1024;
+/// Where the system does not tell what the program holds.
+const PROGRAM_BYTES: u64 = 6 << 20;
+/// What a thread works on: queues of paths and estimates.
+const THREAD_BYTES: u64 = 3 << 18;
+/// Eye samples and photons that a thread handles in a second, roughly. The film grows with the logarithm of the passes,
+/// so that an error of a factor of two here costs one buffer.
+const RATE: f64 = 5e5;
+/// Passes where only the error limits them.
+const MANY_PASSES: f64 = 64.0;
+
+/// Passes of `work` samples and photons each that the stop conditions allow.
+fn expected_passes(stop: &Stop, work: f64) -> u32 {
+    let threads = rayon::current_num_threads() as f64;
+    let timed = stop.time_secs.map(|limit| limit * threads * RATE / work);
+    let worked = stop.cpu_secs.map(|limit| limit * RATE / work);
+    let counted = stop.pass_limit().map(f64::from);
+    let least = [timed, worked, counted].into_iter().flatten().reduce(f64::min);
+    least.unwrap_or(MANY_PASSES).clamp(1.0, 1e9) as u32
+}
 
 impl MemoryPrediction {
-    pub(super) fn of(world: &World, options: &RenderOptions, structure: &StructureSummary, threads: usize) -> Self {
-        let [_, _, width, height] = world.film.crop.unwrap_or([0, 0, world.film.width, world.film.height]);
-        let pixels = width as usize * height as usize;
-        let mut aovs = options.settings.aovs.clone();
-        if options.stop.target_error.is_some() && !aovs.contains(&Aov::Variance) {
-            aovs.push(Aov::Variance);
-        }
-        let channels = FilmLayout::new(&aovs).channels();
-        let passes = options.stop.pass_limit().unwrap_or(MANY_PASSES);
-        // The mean, its layers, and the encoded file exist at once while the picture is written.
-        let film = Film::predicted_bytes(pixels * channels, passes) + 3 * 4 * pixels * channels;
-        let photons = match options.settings.mode {
-            Mode::Path => 0.0,
-            _ => f64::from(options.settings.photons.unwrap_or(1_000_000)) * STORED_PER_EMITTED * BYTES_PER_PHOTON,
-        };
+    pub(super) fn of(world: &World, renderer: &Renderer<'_>, structure: &StructureSummary, stop: &Stop) -> Self {
+        let [_, _, width, height] = renderer.window();
+        let work = f64::from(width) * f64::from(height) + f64::from(renderer.photons());
+        let passes = expected_passes(stop, work);
+        let render = renderer.predicted_memory(passes);
+        let threads = rayon::current_num_threads() as u64;
+        let held = world.geometry_bytes() as u64 + structure.bytes + world.texture_bytes() as u64;
+        let now = resident();
         let by_owner = BTreeMap::from([
             (Owner::Geometry, world.geometry_bytes() as u64),
             (Owner::Structure, structure.bytes),
             (Owner::Textures, world.texture_bytes() as u64),
-            (Owner::Photons, photons as u64),
-            (Owner::Film, film as u64),
-            (Owner::Work, PROGRAM_BYTES + THREAD_BYTES * threads as u64),
+            (Owner::Lights, render.lights),
+            (Owner::Photons, render.photons),
+            (Owner::Film, render.film),
+            (Owner::Program, now.map_or(PROGRAM_BYTES, |n| n.now_bytes.saturating_sub(held)) + THREAD_BYTES * threads),
         ]);
         let sum = by_owner.values().sum();
         // Loading and building may have held more than the render will.
-        let total_bytes = resident().map_or(sum, |resident| resident.peak_bytes.max(sum));
+        let total_bytes = now.map_or(sum, |resident| resident.peak_bytes.max(sum));
         Self { total_bytes, by_owner }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_limit_counts() {
+        let stop = Stop { passes: Some(10), ..Stop::default() };
+        assert_eq!(expected_passes(&stop, 1e6), 10);
+        assert_eq!(expected_passes(&Stop { time_secs: Some(1e-3), ..stop }, 1e9), 1);
+        assert_eq!(expected_passes(&Stop { cpu_secs: Some(4.0), ..stop }, 1e6), 2);
+        let by_error = Stop { target_error: Some(0.1), ..Stop::default() };
+        assert_eq!(expected_passes(&by_error, 1e6), MANY_PASSES as u32);
     }
 }

@@ -14,7 +14,7 @@ pub use photinus_render::{Aov, Mode, Observer, Phase, PhotonPower, RayCounts, Se
 pub use memory::{MemoryPrediction, Owner};
 pub use options::{RenderOptions, View};
 pub use picture::Picture;
-pub use session::{PassState, Rendered, Session, Watcher};
+pub use session::{PassState, Plan, Rendered, Session, Watcher};
 pub use stats::{
     AccelStats, IntersectStats, MemoryStats, PhaseStats, PhotonStats, RayStats, SearchStats, Seconds, Stats,
 };

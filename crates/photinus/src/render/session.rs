@@ -31,13 +31,29 @@ pub struct Session {
     notes: Vec<String>,
 }
 
-/// Listens to a render: phases and progress as an [`Observer`], and every finished pass.
+/// Listens to a render: phases and progress as an [`Observer`], what is planned, and every finished pass.
 pub trait Watcher: Observer {
+    /// The scene has been looked at, and the first pass is about to begin.
+    fn planned(&self, _plan: &Plan) {}
+
     /// A pass has been finished.
     fn pass_done(&self, _state: &PassState<'_>) {}
 }
 
 impl Watcher for photinus_render::Silent {}
+
+/// What a render is going to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Photons of a pass, or of all in the modes with one map; 0 without photons.
+    pub photons: u32,
+    /// Eye samples of a pass.
+    pub samples: u64,
+    /// First gather radii: after a diffuse bounce, and of caustics; scene units. None without photons.
+    pub first_radii: Option<[f32; 2]>,
+    /// The most memory that the process will hold.
+    pub memory: MemoryPrediction,
+}
 
 /// The state of a render between two passes.
 pub struct PassState<'a> {
@@ -129,11 +145,6 @@ impl Session {
         &self.options
     }
 
-    /// The most memory that a render will hold.
-    pub fn predict_memory(&self) -> MemoryPrediction {
-        MemoryPrediction::of(&self.world, &self.options, &self.structure, self.threads())
-    }
-
     /// The nearest hit of each ray within its interval; `hits` is as long as `rays`.
     pub fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
         self.world.structure().closest_hit(rays, hits);
@@ -155,7 +166,6 @@ impl Session {
     fn run(&self, watcher: &dyn Watcher) -> Result<Rendered> {
         let stop = self.options.stop;
         let timeline = Timeline::new(watcher);
-        let prediction = self.predict_memory();
         self.clock.reset();
         let mut settings = self.options.settings.clone();
         settings.track_error |= stop.target_error.is_some();
@@ -164,14 +174,30 @@ impl Session {
             Err(RenderError::Cancelled(_)) => None,
             Err(error) => return Err(error.into()),
         };
+        timeline.end();
         let mut reason = StopReason::Interrupted;
+        let mut plan = None;
         if let Some(renderer) = &mut renderer {
+            let made = self.plan(renderer);
+            watcher.planned(&made);
+            plan = Some(made);
             reason = self.passes(renderer, stop, &timeline, watcher)?;
         }
         timeline.end();
-        let stats = self.stats(renderer.as_ref(), reason, &timeline, &prediction);
+        let stats = self.stats(renderer.as_ref(), reason, &timeline, plan.as_ref());
         let picture = renderer.as_ref().filter(|r| r.has_picture()).map(|r| self.picture(r));
         Ok(Rendered { picture, stats })
+    }
+
+    fn plan(&self, renderer: &Renderer<'_>) -> Plan {
+        let [_, _, width, height] = renderer.window();
+        let settings = &self.options.settings;
+        Plan {
+            photons: renderer.photons(),
+            samples: u64::from(width) * u64::from(height) * u64::from(settings.spp),
+            first_radii: (settings.mode != Mode::Path).then(|| renderer.radii()),
+            memory: MemoryPrediction::of(&self.world, renderer, &self.structure, &self.options.stop),
+        }
     }
 
     /// Runs passes until the render is over.
@@ -232,7 +258,7 @@ impl Session {
         renderer: Option<&Renderer<'_>>,
         stopped: StopReason,
         timeline: &Timeline<'_>,
-        prediction: &MemoryPrediction,
+        plan: Option<&Plan>,
     ) -> Stats {
         let counters = renderer.map(|r| *r.counters()).unwrap_or_default();
         let (wall_secs, cpu_secs) = self.options.stop.clock();
@@ -245,7 +271,7 @@ impl Session {
             passes: renderer.map_or(0, Renderer::passes),
             stopped,
             estimated_error: renderer.and_then(Renderer::estimated_error),
-            first_radii: renderer.filter(|_| settings.mode != Mode::Path).map(Renderer::radii),
+            first_radii: plan.and_then(|plan| plan.first_radii),
             seconds: Seconds { wall_secs, cpu_secs },
             phases: PhaseStats {
                 build: self.build,
@@ -260,7 +286,7 @@ impl Session {
             search: SearchStats::of(&counters, &settings.search),
             photons: PhotonStats::of(&counters),
             other: BTreeMap::new(),
-            memory: MemoryStats::of(prediction),
+            memory: MemoryStats::of(plan.map(|plan| &plan.memory)),
             threads: self.threads(),
             seed: settings.seed,
             settings: settings.clone(),

@@ -1,8 +1,8 @@
 //! The statistics of a render: what was counted, how long it took, what it held in memory.
 
 use super::memory::{MemoryPrediction, Owner};
-use super::stop::StopReason;
-use crate::machine::Machine;
+use super::stop::{Stop, StopReason};
+use crate::machine::{Machine, resident};
 use photinus_accel::StructureSummary;
 use photinus_render::{Counters, PhotonPower, RayCounts, Settings};
 use serde::Serialize;
@@ -115,8 +115,8 @@ pub struct PhotonStats {
 pub struct MemoryStats {
     /// The most that this process held; none where the system does not tell.
     pub peak_bytes: Option<u64>,
-    /// What was predicted before the render.
-    pub predicted_bytes: u64,
+    /// What was predicted before the first pass; none where the render was stopped before that.
+    pub predicted_bytes: Option<u64>,
     /// The prediction by owner.
     pub by_owner: BTreeMap<Owner, u64>,
 }
@@ -164,6 +164,17 @@ pub struct Stats {
     pub version: &'static str,
     /// The machine.
     pub machine: Machine,
+}
+
+impl Stats {
+    /// Adds what was done outside the render, loading and writing for instance, and looks at the clocks and the memory
+    /// again.
+    pub fn add_other(&mut self, what: &str, wall_secs: f64, stop: &Stop) {
+        *self.other.entry(what.to_owned()).or_default() += wall_secs;
+        let (wall_secs, cpu_secs) = stop.clock();
+        self.seconds = Seconds { wall_secs, cpu_secs };
+        self.memory.peak_bytes = resident().map(|resident| resident.peak_bytes);
+    }
 }
 
 impl RayStats {
@@ -228,11 +239,11 @@ impl PhotonStats {
 }
 
 impl MemoryStats {
-    pub(super) fn of(prediction: &MemoryPrediction) -> Self {
+    pub(super) fn of(prediction: Option<&MemoryPrediction>) -> Self {
         Self {
-            peak_bytes: crate::machine::resident().map(|resident| resident.peak_bytes),
-            predicted_bytes: prediction.total_bytes,
-            by_owner: prediction.by_owner.clone(),
+            peak_bytes: resident().map(|resident| resident.peak_bytes),
+            predicted_bytes: prediction.map(|prediction| prediction.total_bytes),
+            by_owner: prediction.map(|prediction| prediction.by_owner.clone()).unwrap_or_default(),
         }
     }
 }
