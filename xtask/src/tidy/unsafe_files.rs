@@ -15,9 +15,16 @@ struct Kernel {
 const GRID_TWIN_TEST: (&str, &str) =
     ("crates/photons/src/searches/grid/tests.rs", "vector_kernels_equal_the_scalar_kernel_bit_for_bit");
 
+/// The wide tree's kernels answer the same rays, bits and counts.
+const WIDE_TWIN_TEST: (&str, &str) =
+    ("crates/accel/src/structures/wide_bvh/tests.rs", "all_kernels_give_the_same_bits_and_the_same_work");
+
 const KERNELS: &[Kernel] = &[
     Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/wide_bvh/dispatch.rs", twin_test: WIDE_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx2.rs", twin_test: WIDE_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx512.rs", twin_test: WIDE_TWIN_TEST },
 ];
 
 /// Checks the list against the sources, both ways.
