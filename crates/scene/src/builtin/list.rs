@@ -1,6 +1,6 @@
 //! The list of built-in scenes: it feeds the command line, the help, the documentation and the tests.
 
-use super::{Builtin, cornell, furnace, spheres, texture, two_spheres, water_lily};
+use super::{Builtin, cornell, furnace, room, spheres, texture, two_spheres, water_lily};
 
 const SCENES: &[Builtin] = &[
     Builtin {
@@ -62,6 +62,30 @@ const SCENES: &[Builtin] = &[
         description: "The pond with water lilies, finely cut.",
         triangles: 6146,
         make: water_lily::fine,
+    },
+    Builtin {
+        name: "room-1",
+        description: "A living room on a large plane: sofa, armchair, glass table, bookshelf, mirror and three plants.",
+        triangles: room::TRIANGLES[0],
+        make: room::room_1,
+    },
+    Builtin {
+        name: "room-2",
+        description: "The room with a dining table laid for four, wall shelves and shrubs in the garden.",
+        triangles: room::TRIANGLES[1],
+        make: room::room_2,
+    },
+    Builtin {
+        name: "room-3",
+        description: "The room with a piano, a globe, hanging plants and more garden.",
+        triangles: room::TRIANGLES[2],
+        make: room::room_3,
+    },
+    Builtin {
+        name: "room-4",
+        description: "The room with a chess table, a second armchair, flowers and many more plants.",
+        triangles: room::TRIANGLES[3],
+        make: room::room_4,
     },
 ];
 

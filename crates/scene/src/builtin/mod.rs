@@ -5,6 +5,7 @@ mod cornell;
 mod furnace;
 mod furniture;
 mod list;
+mod room;
 mod spectra;
 mod spheres;
 mod texture;

@@ -81,7 +81,7 @@ pub(super) fn check_mesh(at: &str, mesh: &Mesh) {
         let cross = (b - a).cross(c - a);
         assert!(0.5 * cross.length() > 1e-9 * extent * extent, "{at}: degenerate {a} {b} {c}");
         let longest = (b - a).length().max((c - a).length()).max((c - b).length());
-        assert!(cross.length() > 2e-3 * longest * longest, "{at}: sliver {a} {b} {c}");
+        assert!(cross.length() > 1e-3 * longest * longest, "{at}: sliver {a} {b} {c}");
         for &v in t {
             if let Some(m) = mesh.normals.get(v as usize) {
                 assert!((m.length() - 1.0).abs() < 1e-5, "{at}: normal {m} is not unit");

@@ -4,7 +4,7 @@ use super::build::{
     Dice, Ends, Finish, Join, LeafShape, Part, Place, Stage, bitmap, bitmap::hex, camera, curve, film, leaf, linear,
     patch, petal, shares, sin_cos_degrees, standing, tube,
 };
-use super::furniture::{ceramics, ceramics::VaseShape, fruit};
+use super::furniture::{ceramics, ceramics::VaseShape, fruit, plants};
 use crate::{EnvironmentLight, Light, Scene};
 use photinus_geometry::Vec3;
 
@@ -55,7 +55,8 @@ pub fn vases() -> Scene {
     pot("bottle", VaseShape::Bottle, 6.2, Place::at(5.4, 3.0, 0.9), 11, bitmap::circles(7));
 
     let sprig = Place::at(-0.5, 12.0, -1.2);
-    stems_and_leaves(&mut stage, sprig, 4, 5.0, 1210);
+    let missing = stage.missing_to(1210);
+    plants::sprig(&mut stage, sprig, 4, 5.0, missing);
     daylight(&mut stage, [16.0, 26.0, 18.0], 4.0, 26.0);
     stage.finish(camera([4.0, 13.0, 30.0], [0.0, 8.6, 0.0], 37.0), film(512, 512), None)
 }
@@ -85,8 +86,10 @@ pub fn tea_table() -> Scene {
         bitmap::stripes(5, 3, hex(0xD8B98A), hex(0x7A3B22), hex(0x2E2A28))
     });
     stage.mesh("vase", bottle, ceramics::vase_part(VaseShape::Bottle, 9.0, 2, 20).placed(Place::at(4.6, 20.0, -3.4)));
-    flowers(&mut stage, Place::at(4.6, 28.3, -3.4));
-    stems_and_leaves(&mut stage, Place::at(4.6, 28.3, -3.4), 9, 6.5, 7590);
+    let mouth = Place::at(4.6, 28.3, -3.4);
+    plants::daisies(&mut stage, mouth, 5, 7.5);
+    let missing = stage.missing_to(7590);
+    plants::sprig(&mut stage, mouth, 9, 6.5, missing);
     daylight(&mut stage, [34.0, 62.0, 40.0], 8.0, 30.0);
     stage.finish(camera([10.5, 38.0, 43.0], [0.2, 20.6, 0.0], 43.0), film(512, 512), None)
 }
@@ -129,58 +132,6 @@ fn table_cloth(radius: f32, height: f32, drop: f32) -> Part {
         let soft = low * low / (low + 0.06);
         Vec3::new(r * cos, height - drop * soft, -r * sin)
     })
-}
-
-/// A sprig: stems from the origin that lean outwards, and leaves along them that bring the scene to exactly `target`
-/// triangles.
-fn stems_and_leaves(stage: &mut Stage, place: Place, stems: usize, length: f32, target: usize) {
-    let bark = stage.paint("stem", 0x5E6B3A, Finish::Matte);
-    let green = stage.paint("leaf", 0x5F8A3E, Finish::Satin(0.35));
-    let mut twigs = Part::default();
-    let mut spots = Vec::new();
-    for k in 0..stems {
-        let mut dice = Dice::new(71, k as u32);
-        let at = place.yaw(360.0 * (k as f32 * 0.618_034)).pitch(dice.between(8.0, 38.0));
-        let reach = length * dice.between(0.75, 1.1);
-        let bend = dice.between(0.05, 0.2) * length;
-        let path = curve(&[[0.0, -0.25 * length, 0.0], [0.0, 0.4 * reach, 0.0], [0.0, reach, bend]], 2);
-        for j in 0..5 {
-            let s = 0.3 + 0.7 * j as f32 / 4.0;
-            let turn = 137.5 * j as f32 + 60.0 * k as f32;
-            spots.push(at.shift(0.0, reach * s, bend * s * s).yaw(turn).pitch(-dice.between(10.0, 40.0)));
-        }
-        twigs.add(tube(&path, 3, Ends::Open, |s| length * (0.016 - 0.009 * s)).placed(at));
-    }
-    stage.mesh("stems", bark, twigs);
-    let shape = LeafShape { length: 0.36 * length, width: 0.17 * length, widest: 0.45, droop: 35.0, fold: 14.0 };
-    let left = stage.missing_to(target);
-    let mut leaves = Part::default();
-    for (spot, triangles) in spots.iter().zip(shares(left, spots.len())) {
-        leaves.add(leaf(shape, triangles).placed(*spot));
-    }
-    stage.mesh("leaves", green, leaves);
-}
-
-/// Five daisies on stems.
-fn flowers(stage: &mut Stage, place: Place) {
-    let white = stage.paint("petals", 0xF0E8DC, Finish::Matte);
-    let yellow = stage.paint("flower-heart", 0xE0A92E, Finish::Matte);
-    let green = stage.paint("stem", 0x5E6B3A, Finish::Matte);
-    for k in 0..5 {
-        let mut dice = Dice::new(72, k);
-        let stem = place.yaw(72.0 * k as f32 + 20.0).pitch(dice.between(10.0, 32.0));
-        let height = dice.between(5.0, 7.5);
-        let path = curve(&[[0.0, -2.0, 0.0], [0.0, 0.5 * height, 0.0], [0.0, height, 0.0]], 2);
-        stage.mesh("flower-stem", green, tube(&path, 4, Ends::Open, |_| 0.09).placed(stem));
-        let head = stem.shift(0.0, height, 0.0);
-        let mut ring = Part::default();
-        for j in 0..9 {
-            ring.add(petal(1.5, 0.7, 0.12, 0.1, 2, 3).placed(head.yaw(360.0 / 9.0 * j as f32).shift(0.0, 0.0, 0.25)));
-        }
-        stage.mesh("petals", white, ring);
-        let heart = super::build::revolve(&[[0.45, -0.05], [0.4, 0.18], [0.22, 0.3], [0.0, 0.34]], 8);
-        stage.mesh("flower-heart", yellow, heart.placed(head));
-    }
 }
 
 /// A spherical lamp and a pale sky.

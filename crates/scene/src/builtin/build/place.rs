@@ -1,6 +1,6 @@
 //! Where a part stands: turns, scales and shifts, with the same bits on every machine.
 
-use photinus_geometry::{Mat3, Vec3};
+use photinus_geometry::{Frame, Mat3, Vec3};
 
 /// Sine and cosine of an angle in degrees; exact at whole quarter turns, so that upright boxes stay axis-aligned.
 pub fn sin_cos_degrees(degrees: f32) -> (f32, f32) {
@@ -33,6 +33,13 @@ impl Place {
     /// A shift.
     pub fn at(x: f32, y: f32, z: f32) -> Self {
         Self::HERE.shift(x, y, z)
+    }
+
+    /// A part at `origin` whose z axis points along `forward` and whose y axis as far along `up` as it can.
+    pub fn facing(origin: Vec3, forward: Vec3, up: Vec3) -> Self {
+        let z = forward / forward.length();
+        let frame = Frame::from_normal_and_tangent(z, up);
+        Self { linear: Mat3::from_cols(frame.s.cross(z), frame.s, z), offset: origin }
     }
 
     /// Shifts the part, along its own axes.
@@ -106,6 +113,9 @@ mod tests {
         assert_eq!(p.point(Vec3::ZERO), Vec3::new(6.0, 2.0, 3.0));
         assert_eq!(Place::HERE.pitch(90.0).point(Vec3::Y), Vec3::Z);
         assert_eq!(Place::HERE.roll(90.0).point(Vec3::X), Vec3::Y);
+        let looking = Place::facing(Vec3::ONE, Vec3::X, Vec3::Y);
+        assert!((looking.point(Vec3::Z) - Vec3::new(2.0, 1.0, 1.0)).length() < 1e-6);
+        assert!((looking.point(Vec3::Y) - Vec3::new(1.0, 2.0, 1.0)).length() < 1e-6 && !looking.mirrors());
         let outer = Place::at(0.0, 10.0, 0.0).yaw(30.0);
         let inner = Place::at(4.0, 0.0, 0.0).roll(20.0);
         let v = Vec3::new(1.0, -2.0, 0.5);

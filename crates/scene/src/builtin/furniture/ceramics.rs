@@ -39,14 +39,14 @@ pub fn vase_part(shape: VaseShape, height: f32, per_span: usize, segments: usize
 
 /// A vase on the place's origin.
 pub fn vase(stage: &mut Stage, place: Place, material: MaterialId, shape: VaseShape, height: f32) {
-    stage.mesh("vase", material, vase_part(shape, height, 3, 26).placed(place));
+    stage.mesh("vase", material, vase_part(shape, height, 2, 20).placed(place));
 }
 
 /// A shallow bowl of this radius.
 pub fn bowl(stage: &mut Stage, place: Place, material: MaterialId, radius: f32) {
     let outer =
         profile(&[[0.4, 0.0], [0.44, 0.06], [0.75, 0.2], [0.93, 0.4], [1.0, 0.58]].map(|p| p.map(|x| x * radius)), 3);
-    stage.mesh("bowl", material, revolve(&hollow(&outer, 0.045 * radius, 0.05 * radius), 32).placed(place));
+    stage.mesh("bowl", material, revolve(&hollow(&outer, 0.045 * radius, 0.05 * radius), 28).placed(place));
 }
 
 /// A plate of this radius.
@@ -71,7 +71,7 @@ pub fn cup(stage: &mut Stage, place: Place, material: MaterialId, size: f32) {
 
 /// A teapot with its spout towards +x; `size` is the radius of its body.
 pub fn teapot(stage: &mut Stage, place: Place, material: MaterialId, size: f32) {
-    stage.mesh("teapot", material, teapot_part(size, 4, 28, 9).placed(place));
+    stage.mesh("teapot", material, teapot_part(size, 3, 24, 8).placed(place));
 }
 
 /// The teapot at this fineness: pieces a span of its outlines, segments around, and sides of spout and handle.

@@ -62,7 +62,7 @@ pub fn bananas(stage: &mut Stage, place: Place, length: f32) {
 pub fn grapes(stage: &mut Stage, place: Place, length: f32) {
     let skin = stage.paint("grape", 0x4B2748, Finish::Gloss);
     let radius = 0.11 * length;
-    let berry = revolve(&ball(radius, 0.0, 6), 8);
+    let berry = revolve(&ball(radius, 0.0, 5), 7);
     let mut bunch = Part::default();
     let mut dice = Dice::new(31, 0);
     for (ring, (x, count, spread)) in

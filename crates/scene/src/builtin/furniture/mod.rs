@@ -4,3 +4,10 @@
 
 pub mod ceramics;
 pub mod fruit;
+pub mod lamps;
+pub mod objects;
+pub mod plants;
+pub mod seats;
+pub mod shelves;
+pub mod tables;
+pub mod walls;

@@ -23,31 +23,37 @@ impl Noise {
         self.lattice[wrap(y) * CELLS + wrap(x)]
     }
 
-    /// The value at (x, y) in cells; repeats every `period` cells, at most 64.
-    fn at(&self, x: f32, y: f32, period: [i64; 2]) -> f32 {
-        let (fx, fy) = (x.floor(), y.floor());
-        let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-        let (tx, ty) = (smooth(x - fx), smooth(y - fy));
-        let wrap = |i: f32, period: i64| (i as i32).rem_euclid(period as i32) as usize;
-        let (x0, x1) = (wrap(fx, period[0]), wrap(fx + 1.0, period[0]));
-        let (y0, y1) = (CELLS * wrap(fy, period[1]), CELLS * wrap(fy + 1.0, period[1]));
-        let low = self.lattice[y0 + x0] * (1.0 - tx) + self.lattice[y0 + x1] * tx;
-        let high = self.lattice[y1 + x0] * (1.0 - tx) + self.lattice[y1 + x1] * tx;
-        low * (1.0 - ty) + high * ty
+    /// The value at (x, y) in cells, at most 64 of which repeat; `shift` picks another part of the lattice.
+    fn at(&self, x: f32, y: f32, period: [i32; 2], shift: usize) -> f32 {
+        let ((x0, x1, tx), (y0, y1, ty)) = (cell_of(x, period[0], shift), cell_of(y, period[1], shift));
+        let (low, high) = (&self.lattice[y0 * CELLS..][..CELLS], &self.lattice[y1 * CELLS..][..CELLS]);
+        let below = low[x0] * (1.0 - tx) + low[x1] * tx;
+        let above = high[x0] * (1.0 - tx) + high[x1] * tx;
+        below * (1.0 - ty) + above * ty
     }
 
     /// Octaves of noise at (u, v) in the unit square, starting with these numbers of cells; about 0 to 1, mean 0.5.
-    pub fn clouds(&self, u: f32, v: f32, cells: [i64; 2], octaves: u32) -> f32 {
+    pub fn clouds(&self, u: f32, v: f32, cells: [i32; 2], octaves: usize) -> f32 {
         let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
         let mut period = cells;
         for octave in 0..octaves {
-            let shift = octave as f32 * 17.0;
-            let limited = period.map(|p| p.min(CELLS as i64));
-            sum += weight * self.at(u * limited[0] as f32 + shift, v * limited[1] as f32 + shift, limited);
+            let limited = period.map(|p| p.min(CELLS as i32));
+            sum += weight * self.at(u * limited[0] as f32, v * limited[1] as f32, limited, 17 * octave);
             total += weight;
             weight *= 0.5;
             period = period.map(|p| p * 2);
         }
         sum / total
     }
+}
+
+/// The cell below `x`, the next one, and the smoothed share of the way between them.
+fn cell_of(x: f32, period: i32, shift: usize) -> (usize, usize, f32) {
+    // The floor by conversion: the function is a slow call on machines without the instruction.
+    let cut = x as i32;
+    let floor = cut - i32::from(x < cut as f32);
+    let t = x - floor as f32;
+    let wrap = |i: i32| if (0..period).contains(&i) { i } else { i.rem_euclid(period) };
+    let place = |i: i32| (wrap(i) as usize + shift) % CELLS;
+    (place(floor), place(floor + 1), t * t * (3.0 - 2.0 * t))
 }

@@ -6,18 +6,23 @@ use std::sync::Arc;
 
 /// Ranges of hills under an evening sky, a low sun between them.
 pub fn hills(number: u32) -> Arc<Bitmap> {
+    const WIDTH: u32 = 512;
     let noise = Noise::new(number);
     let ranges = [0x8C8FB0, 0x6F7FA3, 0x50708A, 0x3C5F66, 0x2E4B40, 0x22352C].map(hex);
-    draw(512, 384, |u, v| {
-        let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, v + 0.08 * noise.clouds(u, v, [3, 12], 4)));
+    let crest = |k: usize, u: f32| {
+        let k = k as f32;
+        0.60 - 0.105 * k + 0.22 * (noise.clouds(u + 0.13 * k, 0.17 * k, [3 + k as i32, 3], 5) - 0.5)
+    };
+    let crests: Vec<[f32; 6]> =
+        (0..WIDTH).map(|x| std::array::from_fn(|k| crest(k, x as f32 / WIDTH as f32))).collect();
+    draw(WIDTH, 384, |u, v| {
+        let bands = v + 0.08 * noise.clouds(u, v, [3, 12], 4);
+        let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, bands));
         let (dx, dy) = ((u - 0.64) * 1.33, v - 0.6);
         let sun = (dx * dx + dy * dy).sqrt();
         let mut c = mix(hex(0xFFF1C9), sky, step_between(0.055, 0.065, sun));
         c = mix(hex(0xFFD898), c, step_between(0.0, 0.4, sun).max(0.35));
-        for (k, &range) in ranges.iter().enumerate() {
-            let k = k as i64;
-            let crest = 0.60 - 0.105 * k as f32
-                + 0.22 * (noise.clouds(u + 0.13 * k as f32, 0.17 * k as f32, [3 + k, 3], 5) - 0.5);
+        for (&range, &crest) in ranges.iter().zip(&crests[(u * WIDTH as f32) as usize]) {
             if v < crest {
                 c = mix(range * 1.12, range * 0.85, step_between(0.0, 0.16, crest - v));
             }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Seas, lands with highlands, ice at the poles and a net of meridians and parallels; u runs around the globe.
 pub fn world(number: u32) -> Arc<Bitmap> {
     let noise = Noise::new(number);
-    draw(1024, 512, |u, v| {
+    draw(768, 384, |u, v| {
         let height = noise.clouds(u, v, [5, 3], 6);
         let cold = step_between(0.40, 0.47, (v - 0.5).abs() + 0.06 * (height - 0.5));
         let land = mix(hex(0xC9B77A), hex(0x7E9A58), step_between(0.5, 0.6, noise.clouds(u + 0.3, v, [7, 5], 4)));
