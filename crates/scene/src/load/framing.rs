@@ -8,7 +8,7 @@ use photinus_geometry::{Aabb, Vec3};
 /// A side is a wall where triangles on it cover at least this share of it.
 const WALL: f32 = 0.6;
 /// A side is open where they cover at most this share.
-const OPEN: f32 = 0.1;
+const OPEN: f32 = 0.5;
 /// Triangles count for a side when they are no farther from it than this share of the scene's extent.
 const NEAR: f32 = 0.03;
 /// Sides through which one may look in, best first: from +z, the customary front, and the other three around.
@@ -157,7 +157,7 @@ mod tests {
             let Projection::Perspective { fov_degrees, .. } = camera.projection else { panic!("perspective") };
             let half_width = if front.z != 0.0 { 2.0 } else { 1.0 };
             let depth = (camera.origin.length() - if front.z != 0.0 { 1.0 } else { 2.0 }).abs();
-            let tangent = (0.5 * fov_degrees.to_radians()).tan();
+            let tangent = libm::tanf(0.5 * fov_degrees.to_radians());
             let (x, y) = (half_width / (depth * tangent * 768.0 / 576.0), 1.5 / (depth * tangent));
             assert!(x.max(y) > 0.95 && x.max(y) < 1.0, "{front}: {x} {y}");
         }
