@@ -23,15 +23,6 @@ pub enum Failure {
 /// Result of a command.
 pub type Result = std::result::Result<Outcome, Failure>;
 
-impl std::fmt::Display for Failure {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Input(line) | Self::Usage(line) => f.write_str(line),
-            Self::OutputClosed => f.write_str("standard output was closed"),
-        }
-    }
-}
-
 impl From<photinus::Error> for Failure {
     fn from(error: photinus::Error) -> Self {
         Self::Input(error.to_string())

@@ -25,14 +25,14 @@ fn main() -> ExitCode {
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted) => ExitCode::from(interrupt::EXIT_CODE),
-        Err(failure) => {
-            report::error(&failure.to_string());
-            ExitCode::from(match failure {
-                Failure::Input(_) => 1,
-                Failure::Usage(_) => 2,
-                // Whoever reads our output went away: nothing is wrong, and nobody is there to be told.
-                Failure::OutputClosed => return ExitCode::SUCCESS,
-            })
-        }
+        // Whoever reads our output went away: nothing is wrong, and nobody is there to be told.
+        Err(Failure::OutputClosed) => ExitCode::SUCCESS,
+        Err(Failure::Input(message)) => fail(&message, 1),
+        Err(Failure::Usage(message)) => fail(&message, 2),
     }
+}
+
+fn fail(message: &str, code: u8) -> ExitCode {
+    report::error(message);
+    ExitCode::from(code)
 }

@@ -27,6 +27,11 @@ pub fn json(document: &impl Serialize) -> io::Result<()> {
     out.flush()
 }
 
+/// One line on standard output.
+pub fn line(text: &str) -> io::Result<()> {
+    writeln!(io::stdout(), "{text}")
+}
+
 /// Names with their values, the values aligned, on standard output.
 pub fn table<N: AsRef<str>>(rows: &[(N, String)]) -> io::Result<()> {
     let width = rows.iter().map(|(name, _)| name.as_ref().chars().count()).max().unwrap_or(0);

@@ -9,6 +9,9 @@ pub enum Error {
     /// A scene file was refused.
     #[error(transparent)]
     Load(#[from] photinus_scene::LoadError),
+    /// A scene cannot be written.
+    #[error(transparent)]
+    WriteScene(#[from] photinus_scene::WriteError),
     /// A picture was refused, or could not be written.
     #[error(transparent)]
     Image(#[from] photinus_image::ImageError),

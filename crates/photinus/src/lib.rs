@@ -15,7 +15,7 @@ pub mod render;
 mod source;
 mod tree;
 
-pub use built_in::{BuiltInScene, built_in_scenes};
+pub use built_in::{BuiltInScene, built_in_scenes, write_built_in};
 pub use compare::{Comparison, compare};
 pub use error::{Error, Result};
 pub use info::{BoundsInfo, CameraInfo, LightKinds, SceneInfo};

@@ -202,7 +202,8 @@ impl Family {
         value.ok_or_else(|| self.unknown(name))
     }
 
-    fn unknown(&self, name: &str) -> Error {
+    /// The error for a name that no member has.
+    pub(crate) fn unknown(&self, name: &str) -> Error {
         let members = self.members();
         let names: Vec<&str> = members.iter().map(|member| member.name).collect();
         Error::UnknownName { name: name.to_owned(), what: self.what, hint: hint(&name.replace('_', "-"), &names) }

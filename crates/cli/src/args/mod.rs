@@ -68,6 +68,14 @@ pub struct ScenesArgs {
 pub enum ScenesCommand {
     /// List the built-in scenes (what happens where nothing is said)
     List,
+    /// Write a built-in scene as Mitsuba XML with PLY meshes and pictures
+    Write {
+        /// The scene
+        #[arg(value_parser = members::parser(photinus::names::SCENES))]
+        name: String,
+        /// The folder; it is made where it does not exist
+        dir: PathBuf,
+    },
 }
 
 /// `photinus tree`.
