@@ -60,7 +60,9 @@ where
         let started = M::start(ray.origin.to_array(), ray.dir.to_array());
         let mut work = LeafWork { tests: prims.len() as u32, hits: 0 };
         for &id in prims {
-            if let Some(hit) = self.test(ray, started.as_ref(), id, ray.t_max.min(best.t)) {
+            // Written so that an end which is not a number stays one: nothing is within it.
+            let t_max = if best.t < ray.t_max { best.t } else { ray.t_max };
+            if let Some(hit) = self.test(ray, started.as_ref(), id, t_max) {
                 work.hits += 1;
                 if hit.beats(best) {
                     *best = hit;

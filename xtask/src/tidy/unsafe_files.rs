@@ -22,7 +22,6 @@ const WIDE_TWIN_TEST: (&str, &str) =
 const KERNELS: &[Kernel] = &[
     Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },
-    Kernel { path: "crates/accel/src/structures/wide_bvh/dispatch.rs", twin_test: WIDE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx2.rs", twin_test: WIDE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx512.rs", twin_test: WIDE_TWIN_TEST },
 ];

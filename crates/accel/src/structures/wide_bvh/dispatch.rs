@@ -60,35 +60,9 @@ impl WideBvh {
         match self.kernel {
             Chosen::Scalar => self.trace::<_, ANY, COUNT>(Scalar, rays, set, counters),
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: having the kernel proves that the machine has AVX2.
-            Chosen::Avx2(kernel) => unsafe { self.trace_avx2::<ANY, COUNT>(kernel, rays, set, counters) },
+            Chosen::Avx2(kernel) => kernel.trace::<ANY, COUNT>(self, rays, set, counters),
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: having the kernel proves that the machine has AVX-512F, VL and DQ.
-            Chosen::Avx512(kernel) => unsafe { self.trace_avx512::<ANY, COUNT>(kernel, rays, set, counters) },
+            Chosen::Avx512(kernel) => kernel.trace::<ANY, COUNT>(self, rays, set, counters),
         }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
-    fn trace_avx2<const ANY: bool, const COUNT: bool>(
-        &self,
-        kernel: Avx2,
-        rays: &[Ray],
-        set: impl FnMut(usize, Hit),
-        counters: &mut RayCounters,
-    ) {
-        self.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512vl,avx512dq,bmi1,bmi2,popcnt,lzcnt")]
-    fn trace_avx512<const ANY: bool, const COUNT: bool>(
-        &self,
-        kernel: Avx512,
-        rays: &[Ray],
-        set: impl FnMut(usize, Hit),
-        counters: &mut RayCounters,
-    ) {
-        self.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
     }
 }

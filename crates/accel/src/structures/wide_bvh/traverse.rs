@@ -118,7 +118,7 @@ struct Walk<'a, K: Kernel, F> {
 impl WideBvh {
     /// The nearest hits, or with `ANY` any hits, of all rays, handed to `set`; counts the work where `COUNT` says so.
     #[inline(always)]
-    pub(super) fn trace<K: Kernel, const ANY: bool, const COUNT: bool>(
+    pub(in crate::structures::wide_bvh) fn trace<K: Kernel, const ANY: bool, const COUNT: bool>(
         &self,
         kernel: K,
         rays: &[Ray],

@@ -1,8 +1,11 @@
 //! AVX2: eight lanes in one register.
 
 use super::{Kernel, Lanes, Reach};
+use crate::structure::RayCounters;
+use crate::structures::wide_bvh::WideBvh;
 use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
+use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
 
 /// The kernel.
@@ -12,8 +15,36 @@ pub struct Avx2(());
 impl Avx2 {
     /// The kernel, where the machine can run it.
     pub fn detect() -> Option<Self> {
-        is_x86_feature_detected!("avx2").then_some(Self(()))
+        let has = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("lzcnt");
+        has.then_some(Self(()))
     }
+
+    /// [`WideBvh::trace`] compiled for this instruction set.
+    pub fn trace<const ANY: bool, const COUNT: bool>(
+        self,
+        tree: &WideBvh,
+        rays: &[Ray],
+        set: impl FnMut(usize, Hit),
+        counters: &mut RayCounters,
+    ) {
+        // SAFETY: `self` proves that the machine has the features that the function is compiled for.
+        unsafe { trace::<ANY, COUNT>(self, tree, rays, set, counters) }
+    }
+}
+
+#[target_feature(enable = "avx2,bmi1,bmi2,popcnt,lzcnt")]
+fn trace<const ANY: bool, const COUNT: bool>(
+    kernel: Avx2,
+    tree: &WideBvh,
+    rays: &[Ray],
+    set: impl FnMut(usize, Hit),
+    counters: &mut RayCounters,
+) {
+    tree.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
 }
 
 /// For each mask of eight lanes the indices of those that are set, in front.

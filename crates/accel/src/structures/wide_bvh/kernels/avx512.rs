@@ -2,8 +2,11 @@
 //! nothing on nodes of eight.
 
 use super::{Kernel, Lanes, Reach};
+use crate::structure::RayCounters;
+use crate::structures::wide_bvh::WideBvh;
 use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
+use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
 
 /// The kernel.
@@ -15,9 +18,36 @@ impl Avx512 {
     pub fn detect() -> Option<Self> {
         let has = is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512vl")
-            && is_x86_feature_detected!("avx512dq");
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("lzcnt");
         has.then_some(Self(()))
     }
+
+    /// [`WideBvh::trace`] compiled for this instruction set.
+    pub fn trace<const ANY: bool, const COUNT: bool>(
+        self,
+        tree: &WideBvh,
+        rays: &[Ray],
+        set: impl FnMut(usize, Hit),
+        counters: &mut RayCounters,
+    ) {
+        // SAFETY: `self` proves that the machine has the features that the function is compiled for.
+        unsafe { trace::<ANY, COUNT>(self, tree, rays, set, counters) }
+    }
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,bmi1,bmi2,popcnt,lzcnt")]
+fn trace<const ANY: bool, const COUNT: bool>(
+    kernel: Avx512,
+    tree: &WideBvh,
+    rays: &[Ray],
+    set: impl FnMut(usize, Hit),
+    counters: &mut RayCounters,
+) {
+    tree.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
 }
 
 impl Kernel for Avx512 {
