@@ -1,7 +1,7 @@
 //! All materials of a scene, prepared once.
 
 use super::builder::Builder;
-use super::microfacet::{InterfaceTable, PlasticTable, SplitSumTable};
+use super::microfacet::{InterfaceTable, SplitSumTable};
 use super::{Bsdf, SurfaceModel, fresnel_diffuse_reflectance};
 use crate::SurfacePoint;
 use crate::texture::{TextureLookup, Textures};
@@ -14,7 +14,6 @@ pub struct Materials {
     materials: Vec<Prepared>,
     textures: Textures,
     model: SurfaceModel,
-    plastics: Vec<PlasticTable>,
     interfaces: Vec<InterfaceTable>,
     split_sums: Vec<(MicrofacetModel, SplitSumTable)>,
     /// Relative index and mean reflectance under diffuse light from the side that it is relative to.
@@ -32,8 +31,6 @@ struct Prepared {
 pub(super) enum Table {
     /// Reflectance by Schlick's formula.
     SplitSum(MicrofacetModel),
-    /// A coat over a diffuse base.
-    Plastic(MicrofacetModel, f32),
     /// Reflectance and transmittance of an interface.
     Interface(MicrofacetModel, f32),
 }
@@ -54,7 +51,6 @@ impl Materials {
             materials: Vec::with_capacity(materials.len()),
             textures: Textures::new(textures),
             model,
-            plastics: Vec::new(),
             interfaces: Vec::new(),
             split_sums: Vec::new(),
             diffuse_reflectances: Vec::new(),
@@ -84,9 +80,6 @@ impl Materials {
             Table::SplitSum(model) if self.split_sum(model).is_none() => {
                 self.split_sums.push((model, SplitSumTable::new(model)));
             }
-            Table::Plastic(model, eta) if self.plastic_table(model, eta).is_none() => {
-                self.plastics.push(PlasticTable::new(model, eta));
-            }
             Table::Interface(model, eta) if self.interface_table(model, eta).is_none() => {
                 self.interfaces.push(InterfaceTable::new(model, eta));
             }
@@ -96,10 +89,9 @@ impl Materials {
 
     /// Bytes held beyond the scene itself.
     pub fn bytes(&self) -> usize {
-        let tables: usize = self.plastics.iter().map(PlasticTable::bytes).sum();
         let interfaces: usize = self.interfaces.iter().map(InterfaceTable::bytes).sum();
         let sums: usize = self.split_sums.iter().map(|(_, table)| table.bytes()).sum();
-        self.materials.len() * size_of::<Prepared>() + self.textures.bytes() + tables + interfaces + sums
+        self.materials.len() * size_of::<Prepared>() + self.textures.bytes() + interfaces + sums
     }
 
     /// How faithfully surfaces are modelled.
@@ -114,10 +106,6 @@ impl Materials {
 
     pub(super) fn material(&self, id: MaterialId) -> &Material {
         self.materials.get(id.0 as usize).map_or(&MISSING, |prepared| &prepared.material)
-    }
-
-    pub(super) fn plastic_table(&self, model: MicrofacetModel, eta: f32) -> Option<&PlasticTable> {
-        self.plastics.iter().find(|table| table.model == model && table.eta == eta)
     }
 
     pub(super) fn interface_table(&self, model: MicrofacetModel, eta: f32) -> Option<&InterfaceTable> {

@@ -24,7 +24,7 @@ pub use list::{MATERIAL_KINDS, MaterialKind, material_kind};
 use super::builder::{Builder, Place};
 use super::materials::{Materials, Table};
 use crate::texture::TextureLookup;
-use photinus_scene::{Material, MicrofacetModel};
+use photinus_scene::{FloatInput, Material, MicrofacetModel};
 
 /// Adds the lobes of `material` at `place`.
 pub(super) fn add(builder: &mut Builder, material: &Material, place: Place) {
@@ -99,18 +99,16 @@ pub(super) fn tables(material: &Material) -> Vec<Table> {
     let ggx = MicrofacetModel::Ggx;
     match *material {
         Material::RoughConductor { model, .. } => vec![Table::SplitSum(model)],
-        Material::RoughDielectric { model, int_ior, ext_ior, .. } => {
+        Material::RoughDielectric { model, int_ior, ext_ior, .. }
+        | Material::RoughPlastic { model, int_ior, ext_ior, .. } => {
             vec![Table::Interface(model, dielectric::relative_index([int_ior, ext_ior]))]
         }
-        Material::RoughPlastic { model, int_ior, ext_ior, .. } => {
-            vec![Table::Plastic(model, dielectric::relative_index([int_ior, ext_ior]))]
-        }
+        Material::Principled { spec_trans: FloatInput::Constant(0.0), .. } => vec![Table::SplitSum(ggx)],
         Material::Principled { eta, .. } => {
             vec![Table::SplitSum(ggx), Table::Interface(ggx, principled::relative_index(eta))]
         }
         Material::Thesis { int_ior, ext_ior, .. } => {
-            let eta = dielectric::relative_index([int_ior, ext_ior]);
-            vec![Table::Plastic(ggx, eta), Table::Interface(ggx, eta)]
+            vec![Table::Interface(ggx, dielectric::relative_index([int_ior, ext_ior]))]
         }
         _ => vec![],
     }

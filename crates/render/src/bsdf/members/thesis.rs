@@ -55,15 +55,14 @@ pub fn add(builder: &mut Builder, place: Place, material: &Material) {
     }
     let mirror = is_mirror([alpha; 2]);
     let facets = Microfacets::new(MicrofacetModel::Ggx, [alpha; 2]);
-    let table = builder.materials.plastic_table(MicrofacetModel::Ggx, relative_index(iors));
-    let coat = table.filter(|_| !mirror).map(|table| table.at(alpha));
+    let table = builder.materials.interface_table(MicrofacetModel::Ggx, relative_index(iors));
+    let coat = table.filter(|_| !mirror).map(|table| table.coat(alpha));
     if mirror || eta == 1.0 {
         let f = fresnel_dielectric(cos, eta).0;
         builder.delta_reflection(specular_place, reflectance * f);
         builder.delta_transmission(specular_place, transmittance * (1.0 - f), eta);
     } else if opaque {
-        let reflected = coat.as_ref().map_or(mean, |coat| 1.0 - coat.transmittance.at(cos));
-        push_coat(builder, specular_place, facets, eta, reflected, reflectance);
+        push_coat(builder, specular_place, facets, eta, reflectance);
     } else {
         let shape = RoughInterface { facets, eta, reflectance, transmittance, tint: InterfaceTint::PLAIN };
         rough_dielectric::push(builder, specular_place, shape, Vec3::ONE);

@@ -9,7 +9,7 @@ mod beckmann;
 mod ggx;
 mod tables;
 
-pub(super) use tables::{CosTable, InterfaceTable, PlasticTable, SplitSumTable};
+pub(super) use tables::{CosTable, InterfaceTable, SplitSumTable};
 
 use photinus_geometry::Vec3;
 use photinus_scene::MicrofacetModel;

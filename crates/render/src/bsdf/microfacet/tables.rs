@@ -4,6 +4,7 @@ use super::{Microfacets, reflect, refract};
 use crate::bsdf::fresnel::{fresnel_dielectric, schlick_weight};
 use photinus_geometry::Vec3;
 use photinus_scene::MicrofacetModel;
+use rayon::prelude::*;
 
 /// Nodes over the cosine, at (i / 15)^2: reflectance bends most towards grazing directions.
 const COSINES: usize = 16;
@@ -11,8 +12,11 @@ const COSINES: usize = 16;
 /// Nodes over the roughness, at (i / 15)^2.
 const ALPHAS: usize = 16;
 
-/// Points a side of the grid over the random square.
+/// Points a side of the grid over the random square for one table entry.
 const POINTS: u32 = 20;
+
+/// The same for a mean over cosines, which has many entries to average over.
+const MEAN_POINTS: u32 = 10;
 
 /// Values over the cosine, linear in its square root between nodes. Small enough to be part of a lobe.
 #[derive(Clone, Copy, Debug)]
@@ -49,20 +53,26 @@ fn alpha_node(i: usize) -> f32 {
     x * x
 }
 
-/// Means of `f(wo, m)` over the facets that are visible from a direction `wo` of the given cosine.
-fn mean_over_facets<const N: usize>(facets: &Microfacets, cos: f32, f: impl Fn(Vec3, Vec3) -> [f32; N]) -> [f32; N] {
+/// Means of `f(wo, m)` over the facets that are visible from a direction `wo` of the given cosine, by a grid of
+/// `points` squared.
+fn mean_over_facets<const N: usize>(
+    facets: &Microfacets,
+    cos: f32,
+    points: u32,
+    f: impl Fn(Vec3, Vec3) -> [f32; N],
+) -> [f32; N] {
     let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
     let mut sum = [0.0f64; N];
-    for i in 0..POINTS {
-        for j in 0..POINTS {
-            let u = [(i as f32 + 0.5) / POINTS as f32, (j as f32 + 0.5) / POINTS as f32];
+    for i in 0..points {
+        for j in 0..points {
+            let u = [(i as f32 + 0.5) / points as f32, (j as f32 + 0.5) / points as f32];
             let m = facets.sample_visible(wo, u);
             for (s, v) in sum.iter_mut().zip(f(wo, m)) {
                 *s += f64::from(v);
             }
         }
     }
-    sum.map(|s| (s / f64::from(POINTS * POINTS)) as f32)
+    sum.map(|s| (s / f64::from(points * points)) as f32)
 }
 
 /// Shadowing of the direction into which the facet `m` mirrors `wo`.
@@ -71,62 +81,18 @@ fn mirrored_shadow(facets: &Microfacets, wo: Vec3, m: Vec3) -> f32 {
     if wi.z > 0.0 { facets.g1(wi) } else { 0.0 }
 }
 
-/// Reflectance and transmittance of facets between dielectrics from a direction of the given cosine.
-fn interface_shares(facets: &Microfacets, cos: f32, eta: f32) -> [f32; 2] {
-    mean_over_facets(facets, cos, |wo, m| {
-        let (f, cos_t) = fresnel_dielectric(wo.dot(m), eta);
-        let wi = refract(wo, m, eta, cos_t);
-        let passed = if f < 1.0 && wi.z < 0.0 { facets.g1(wi) } else { 0.0 };
-        [f * mirrored_shadow(facets, wo, m), (1.0 - f) * passed]
-    })
+/// Shares of light that the facet `m` reflects and transmits.
+fn interface_shares(facets: &Microfacets, wo: Vec3, m: Vec3, eta: f32) -> [f32; 2] {
+    let (f, cos_t) = fresnel_dielectric(wo.dot(m), eta);
+    let wi = refract(wo, m, eta, cos_t);
+    let passed = if f < 1.0 && wi.z < 0.0 { facets.g1(wi) } else { 0.0 };
+    [f * mirrored_shadow(facets, wo, m), (1.0 - f) * passed]
 }
 
-/// Directional reflectance and transmittance of a rough interface between dielectrics, from both sides.
-#[derive(Clone, Debug)]
-pub struct InterfaceTable {
-    /// What it was made for.
-    pub model: MicrofacetModel,
-    /// Index inside over index outside.
-    pub eta: f32,
-    /// For each roughness: reflectance and transmittance seen from outside, then from inside.
-    rows: Vec<[CosTable; 4]>,
-}
-
-impl InterfaceTable {
-    /// About 10 ms for GGX.
-    pub fn new(model: MicrofacetModel, eta: f32) -> Self {
-        let row = |a: usize| {
-            let facets = Microfacets::new(model, [alpha_node(a); 2]);
-            let sides = [eta, 1.0 / eta].map(|eta| {
-                let shares: [[f32; 2]; COSINES] =
-                    std::array::from_fn(|i| interface_shares(&facets, CosTable::node(i), eta));
-                [CosTable(shares.map(|s| s[0])), CosTable(shares.map(|s| s[1]))]
-            });
-            [sides[0][0], sides[0][1], sides[1][0], sides[1][1]]
-        };
-        Self { model, eta, rows: (0..ALPHAS).map(row).collect() }
-    }
-
-    /// Memory of the table.
-    pub fn bytes(&self) -> usize {
-        self.rows.len() * size_of::<[CosTable; 4]>()
-    }
-
-    /// Reflectance and transmittance from outside or inside.
-    pub fn at(&self, alpha: f32, cos: f32, inside: bool) -> [f32; 2] {
-        let (i, t) = alpha_place(alpha);
-        let first = if inside { 2 } else { 0 };
-        [first, first + 1].map(|k| {
-            let (a, b) = (self.rows[i][k].at(cos), self.rows[i + 1][k].at(cos));
-            a + (b - a) * t
-        })
-    }
-}
-
-/// A rough dielectric coat.
+/// A rough dielectric coat, seen from outside.
 #[derive(Clone, Copy, Debug)]
 pub struct Coat {
-    /// What passes from outside, over the cosine.
+    /// What passes without scattering twice, over the cosine.
     pub transmittance: CosTable,
     /// Its mean under diffuse light, 2 * integral of T(mu) mu.
     pub mean_transmittance: f32,
@@ -134,54 +100,77 @@ pub struct Coat {
     pub internal_reflectance: f32,
 }
 
-/// Reflectances of one dielectric interface for all roughnesses, for plastics.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    /// Reflectance and transmittance seen from outside, then from inside.
+    sides: [[CosTable; 2]; 2],
+    mean_transmittance: f32,
+    internal_reflectance: f32,
+}
+
+/// Directional reflectance and transmittance of a rough interface between dielectrics, from both sides, for all
+/// roughnesses. Only single scattering counts, so they add up to less than 1.
 #[derive(Clone, Debug)]
-pub struct PlasticTable {
+pub struct InterfaceTable {
     /// What it was made for.
     pub model: MicrofacetModel,
     /// Index inside over index outside.
     pub eta: f32,
-    coats: Vec<Coat>,
+    rows: Vec<Row>,
 }
 
-impl PlasticTable {
-    /// About 20 ms for GGX.
+impl InterfaceTable {
+    /// Some 20 ms of one core for GGX, 50 ms for Beckmann.
     pub fn new(model: MicrofacetModel, eta: f32) -> Self {
-        let reflectance = |alpha: f32, cos: f32, eta: f32| {
-            if alpha <= crate::bsdf::MIRROR_ALPHA {
-                return fresnel_dielectric(cos, eta).0;
-            }
-            let facets = Microfacets::new(model, [alpha; 2]);
-            mean_over_facets(&facets, cos, |wo, m| {
-                [fresnel_dielectric(wo.dot(m), eta).0 * mirrored_shadow(&facets, wo, m)]
-            })[0]
-        };
-        let coat = |a: usize| {
-            let alpha = alpha_node(a);
-            let transmittance = CosTable(std::array::from_fn(|i| 1.0 - reflectance(alpha, CosTable::node(i), eta)));
-            // 2 * integral of R(mu) mu dmu = integral of R over mu^2: midpoints.
+        let row = |a: usize| {
+            let facets = Microfacets::new(model, [alpha_node(a); 2]);
+            let shares: [[f32; 4]; COSINES] = std::array::from_fn(|i| {
+                mean_over_facets(&facets, CosTable::node(i), POINTS, |wo, m| {
+                    let [r, t] = interface_shares(&facets, wo, m, eta);
+                    let [inner_r, inner_t] = interface_shares(&facets, wo, m, 1.0 / eta);
+                    [r, t, inner_r, inner_t]
+                })
+            });
+            let column = |k: usize| CosTable(shares.map(|s| s[k]));
+            let sides = [[column(0), column(1)], [column(2), column(3)]];
+            // 2 * integral of f(mu) mu dmu = integral of f over mu^2: midpoints.
             let mean = |steps: u32, f: &dyn Fn(f32) -> f32| {
                 (0..steps).map(|i| f(((i as f32 + 0.5) / steps as f32).sqrt())).sum::<f32>() / steps as f32
             };
-            let mean_transmittance = mean(1024, &|cos| transmittance.at(cos));
-            let internal_reflectance = mean(32, &|cos| reflectance(alpha, cos, 1.0 / eta));
-            Coat { transmittance, mean_transmittance, internal_reflectance }
+            let inner =
+                |wo: Vec3, m: Vec3| [fresnel_dielectric(wo.dot(m), 1.0 / eta).0 * mirrored_shadow(&facets, wo, m)];
+            Row {
+                sides,
+                mean_transmittance: mean(1024, &|cos| sides[0][1].at(cos)),
+                // The table is too coarse for the kink of total reflection.
+                internal_reflectance: mean(64, &|cos| mean_over_facets(&facets, cos, MEAN_POINTS, inner)[0]),
+            }
         };
-        Self { model, eta, coats: (0..ALPHAS).map(coat).collect() }
+        Self { model, eta, rows: (0..ALPHAS).into_par_iter().map(row).collect() }
     }
 
     /// Memory of the table.
     pub fn bytes(&self) -> usize {
-        self.coats.len() * size_of::<Coat>()
+        self.rows.len() * size_of::<Row>()
     }
 
-    /// The coat of this roughness.
-    pub fn at(&self, alpha: f32) -> Coat {
+    /// Reflectance and transmittance from outside or inside.
+    pub fn at(&self, alpha: f32, cos: f32, inside: bool) -> [f32; 2] {
         let (i, t) = alpha_place(alpha);
-        let (a, b) = (&self.coats[i], &self.coats[i + 1]);
+        let side = usize::from(inside);
+        [0, 1].map(|k| {
+            let (a, b) = (self.rows[i].sides[side][k].at(cos), self.rows[i + 1].sides[side][k].at(cos));
+            a + (b - a) * t
+        })
+    }
+
+    /// The interface as a coat.
+    pub fn coat(&self, alpha: f32) -> Coat {
+        let (i, t) = alpha_place(alpha);
+        let (a, b) = (&self.rows[i], &self.rows[i + 1]);
         let blend = |a: f32, b: f32| a + (b - a) * t;
         Coat {
-            transmittance: CosTable::blend(&a.transmittance, &b.transmittance, t),
+            transmittance: CosTable::blend(&a.sides[0][1], &b.sides[0][1], t),
             mean_transmittance: blend(a.mean_transmittance, b.mean_transmittance),
             internal_reflectance: blend(a.internal_reflectance, b.internal_reflectance),
         }
@@ -197,21 +186,20 @@ pub struct SplitSumTable {
 }
 
 impl SplitSumTable {
-    /// About 10 ms for GGX.
+    /// Some 5 ms of one core for GGX, 25 ms for Beckmann.
     pub fn new(model: MicrofacetModel) -> Self {
-        let (mut base, mut grazing) = (Vec::new(), Vec::new());
-        for a in 0..ALPHAS {
+        let row = |a: usize| {
             let facets = Microfacets::new(model, [alpha_node(a); 2]);
             let terms: [[f32; 2]; COSINES] = std::array::from_fn(|i| {
-                mean_over_facets(&facets, CosTable::node(i), |wo, m| {
+                mean_over_facets(&facets, CosTable::node(i), POINTS, |wo, m| {
                     let w = schlick_weight(wo.dot(m));
                     let shadow = mirrored_shadow(&facets, wo, m);
                     [(1.0 - w) * shadow, w * shadow]
                 })
             });
-            base.push(CosTable(terms.map(|t| t[0])));
-            grazing.push(CosTable(terms.map(|t| t[1])));
-        }
+            (CosTable(terms.map(|t| t[0])), CosTable(terms.map(|t| t[1])))
+        };
+        let (base, grazing) = (0..ALPHAS).into_par_iter().map(row).unzip();
         Self { base, grazing }
     }
 
@@ -238,8 +226,9 @@ mod tests {
 
     #[test]
     fn smooth_plastic_has_fresnels_values() {
-        let table = PlasticTable::new(MicrofacetModel::Ggx, 1.5);
-        let Coat { transmittance, internal_reflectance: inside, .. } = table.at(0.0);
+        let table = InterfaceTable::new(MicrofacetModel::Ggx, 1.5);
+        let Coat { transmittance, internal_reflectance: inside, mean_transmittance } = table.coat(0.0);
+        assert!((mean_transmittance - (1.0 - fresnel_diffuse_reflectance(1.5))).abs() < 0.01, "{mean_transmittance}");
         assert!((transmittance.at(1.0) - 0.96).abs() < 1e-4);
         assert!((inside - fresnel_diffuse_reflectance(1.0 / 1.5)).abs() < 0.01, "{inside}");
         for i in 1..20 {

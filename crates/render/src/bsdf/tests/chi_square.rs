@@ -151,7 +151,7 @@ fn the_tail_has_known_values() {
 fn samples_follow_their_density() {
     let mut tests = Vec::new();
     for subject in subjects() {
-        let (materials, id) = subject.prepare();
+        let &(ref materials, id) = subject.prepare();
         for (z, phi) in [(0.95, 0.3), (0.5, 2.0), (0.1, 4.0), (-0.6, 1.0)] {
             for point in [flat_point(), tilted_point(Vec3::new(0.3, 0.2, 1.0).normalize())] {
                 // The tilted point costs as much as the flat one and tests less: one direction is enough.
@@ -198,7 +198,7 @@ fn a_wrong_density_is_found() {
     let find = |name: &str| all.iter().find(|s| s.name.starts_with(name)).expect("a subject");
     let wo = direction(0.7, 0.5);
     let resolve = |name: &str| {
-        let (materials, id) = find(name).prepare();
+        let &(ref materials, id) = find(name).prepare();
         materials.resolve(id, &flat_point(), wo)
     };
     let (a, b) = (resolve("rough-conductor Ggx [0.3"), resolve("rough-conductor Beckmann [0.3"));

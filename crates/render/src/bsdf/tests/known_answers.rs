@@ -4,7 +4,7 @@ use super::subjects::{glass, metal, plastic, principled, rough_glass, rough_plas
 use super::{direction, flat_point, grey, prepare, resolve, rgb};
 use crate::bsdf::{Bsdf, LobeSet, SurfaceModel, TransportMode};
 use photinus_geometry::Vec3;
-use photinus_scene::{Material, MicrofacetModel};
+use photinus_scene::{Material, MaterialId, MicrofacetModel};
 
 const RADIANCE: TransportMode = TransportMode::Radiance;
 const IMPORTANCE: TransportMode = TransportMode::Importance;
@@ -91,8 +91,10 @@ fn no_roughness_is_a_mirror() {
             (thesis(alpha, grey(1.0), grey(1.0)), glass()),
         ];
         for (rough, smooth) in pairs {
+            let (materials, last) = prepare(vec![rough.clone(), smooth], vec![], SurfaceModel::Physical);
             for z in [0.9, 0.3, -0.5] {
-                let (a, b) = (resolve(rough.clone(), direction(z, 0.5)), resolve(smooth.clone(), direction(z, 0.5)));
+                let at = |id| materials.resolve(id, &flat_point(), direction(z, 0.5));
+                let (a, b) = (at(MaterialId(0)), at(last));
                 let (a_children, b_children) = (children(&a, RADIANCE), children(&b, RADIANCE));
                 let close = |x: Option<(Vec3, Vec3)>, y: Option<(Vec3, Vec3)>| match (x, y) {
                     (Some(x), Some(y)) => x.0 == y.0 && (x.1 - y.1).abs().max_element() < 1e-5,
@@ -123,13 +125,17 @@ fn metal_at_normal_incidence_is_bright_in_the_mirror_direction() {
 #[test]
 fn the_thesis_model_ends_in_a_mirror_and_in_a_lambertian_surface() {
     let (reflectance, transmittance) = (rgb(0.9, 0.6, 0.3), rgb(0.2, 0.5, 0.8));
+    let list = vec![
+        thesis(0.0, reflectance, grey(0.0)),
+        thesis(1.0, reflectance, grey(0.0)),
+        thesis(1.0, reflectance, transmittance),
+    ];
+    let (materials, _) = prepare(list, vec![], SurfaceModel::Physical);
     for z in [0.9, 0.2, -0.4] {
-        let wo = direction(z, 0.4);
-        let mirror = resolve(thesis(0.0, reflectance, grey(0.0)), wo);
+        let [mirror, matte, clear] =
+            [0, 1, 2].map(|id| materials.resolve(MaterialId(id), &flat_point(), direction(z, 0.4)));
         assert_eq!(mirror.kinds(), LobeSet::DELTA_REFLECTION);
-        let matte = resolve(thesis(1.0, reflectance, grey(0.0)), wo);
         assert_eq!(matte.kinds(), LobeSet::DIFFUSE_REFLECTION);
-        let clear = resolve(thesis(1.0, reflectance, transmittance), wo);
         assert_eq!(clear.kinds(), LobeSet::DIFFUSE_REFLECTION | LobeSet::DIFFUSE_TRANSMISSION);
         for wi in [direction(0.9, 1.0), direction(0.1, 2.0), direction(-0.5, 3.0)] {
             // The same radiance factor from everywhere: the reflectance over pi for the opaque one.

@@ -4,6 +4,7 @@ mod chi_square;
 mod energy;
 mod fixed;
 mod known_answers;
+mod mitsuba_values;
 mod nesting;
 mod reciprocity;
 mod shading_normals;

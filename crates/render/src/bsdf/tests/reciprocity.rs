@@ -23,7 +23,7 @@ fn values_are_reciprocal() {
         if subject.name.contains("map") || subject.name == "two-sided" {
             continue;
         }
-        let (materials, id) = subject.prepare();
+        let &(ref materials, id) = subject.prepare();
         for k in 0..300 {
             let mut s = sampler(t as u32, k);
             let (wo, wi) = (sphere(s.next_2d()), sphere(s.next_2d()));
@@ -55,7 +55,7 @@ fn importance_is_the_adjoint_of_radiance() {
         if subject.name == "two-sided" {
             continue;
         }
-        let (materials, id) = subject.prepare();
+        let &(ref materials, id) = subject.prepare();
         for normal in [Vec3::Z, Vec3::new(0.3, -0.1, 1.0).normalize()] {
             let point = tilted_point(normal);
             for k in 0..200 {

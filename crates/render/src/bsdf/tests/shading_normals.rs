@@ -20,7 +20,7 @@ fn nothing_leaks_and_nothing_is_nan() {
         Vec3::new(0.999_999_9, 0.0, 4.5e-4).normalize(),
     ];
     for (t, subject) in subjects().iter().enumerate() {
-        let (materials, id) = subject.prepare();
+        let &(ref materials, id) = subject.prepare();
         for k in 0..250u64 {
             let mut s = sampler(t as u32, k);
             let mut pick = |u: [f32; 2]| {
@@ -71,7 +71,7 @@ fn silhouettes_are_not_black() {
     let wo = direction(0.2, 0.0);
     assert!(n.dot(wo) < 0.0);
     for subject in subjects() {
-        let (materials, id) = subject.prepare();
+        let &(ref materials, id) = subject.prepare();
         let bsdf = materials.resolve(id, &tilted_point(n), wo);
         assert!(bsdf.shading_normal().dot(wo) > 0.0);
         if subject.name == "null" || subject.name.starts_with("bump") || subject.name.starts_with("normal") {

@@ -7,17 +7,23 @@ use photinus_scene::{
     Bitmap, BitmapPixels, ColorInput, Material, MaterialId, MicrofacetModel, Texture, TextureFilter, TextureId,
     TextureKind, WrapMode,
 };
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 pub struct Subject {
     pub name: String,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
+    prepared: OnceLock<(Materials, MaterialId)>,
 }
 
 impl Subject {
-    pub fn prepare(&self) -> (Materials, MaterialId) {
-        prepare(self.materials.clone(), self.textures.clone(), SurfaceModel::Physical)
+    pub fn new(name: &str, materials: Vec<Material>, textures: Vec<Texture>) -> Self {
+        Self { name: name.into(), materials, textures, prepared: OnceLock::new() }
+    }
+
+    /// The materials with their tables, made on first use, and the id of the one to test.
+    pub fn prepare(&self) -> &(Materials, MaterialId) {
+        self.prepared.get_or_init(|| prepare(self.materials.clone(), self.textures.clone(), SurfaceModel::Physical))
     }
 }
 
@@ -105,11 +111,17 @@ pub fn picture(size: u32, pixel: impl Fn(u32, u32) -> Vec3) -> Texture {
 }
 
 fn one(name: &str, material: Material) -> Subject {
-    Subject { name: name.into(), materials: vec![material], textures: vec![] }
+    Subject::new(name, vec![material], vec![])
 }
 
-/// All of them; colours below 1 and different per channel where that could hide a mistake.
-pub fn subjects() -> Vec<Subject> {
+/// All of them, shared by the tests: tables take longer than most of these.
+pub fn subjects() -> &'static [Subject] {
+    static SUBJECTS: OnceLock<Vec<Subject>> = OnceLock::new();
+    SUBJECTS.get_or_init(make_subjects)
+}
+
+/// Colours below 1 and different per channel where that could hide a mistake.
+fn make_subjects() -> Vec<Subject> {
     use MicrofacetModel::{Beckmann, Ggx};
     let color = rgb(0.8, 0.5, 0.2);
     let mut list = vec![
@@ -155,7 +167,7 @@ pub fn subjects() -> Vec<Subject> {
     let mut nested = |name: &str, top: Material, textures: Vec<Texture>| {
         let mut materials = base();
         materials.push(top);
-        list.push(Subject { name: name.into(), materials, textures });
+        list.push(Subject::new(name, materials, textures));
     };
     nested("two-sided", Material::TwoSided { front: id(0), back: id(1) }, vec![]);
     nested("mask", Material::Mask { opacity: num(0.3), nested: id(1) }, vec![]);
