@@ -35,6 +35,9 @@ pub(super) enum Table {
     Interface(MicrofacetModel, f32),
 }
 
+/// Different indices of refraction that get a table of their own (some 20 ms each); a scene of many more shares them.
+const MAX_INTERFACE_TABLES: usize = 64;
+
 /// What a material id stands for that is on no list.
 const MISSING: Material = Material::Diffuse { reflectance: ColorInput::Constant(Vec3::splat(0.5)) };
 
@@ -80,8 +83,11 @@ impl Materials {
             Table::SplitSum(model) if self.split_sum(model).is_none() => {
                 self.split_sums.push((model, SplitSumTable::new(model)));
             }
-            Table::Interface(model, eta) if self.interface_table(model, eta).is_none() => {
-                self.interfaces.push(InterfaceTable::new(model, eta));
+            Table::Interface(model, eta) => {
+                let known = self.interface_table(model, eta).is_some_and(|table| table.eta == eta);
+                if !known && self.interfaces.len() < MAX_INTERFACE_TABLES {
+                    self.interfaces.push(InterfaceTable::new(model, eta));
+                }
             }
             _ => {}
         }
@@ -108,8 +114,10 @@ impl Materials {
         self.materials.get(id.0 as usize).map_or(&MISSING, |prepared| &prepared.material)
     }
 
+    /// The table whose index, inside over outside, is nearest to `eta`.
     pub(super) fn interface_table(&self, model: MicrofacetModel, eta: f32) -> Option<&InterfaceTable> {
-        self.interfaces.iter().find(|table| table.model == model && table.eta == eta)
+        let of_model = self.interfaces.iter().filter(|table| table.model == model);
+        of_model.min_by(|a, b| (a.eta - eta).abs().total_cmp(&(b.eta - eta).abs()))
     }
 
     pub(super) fn split_sum(&self, model: MicrofacetModel) -> Option<&SplitSumTable> {
@@ -118,7 +126,7 @@ impl Materials {
 
     /// Mean reflectance of a smooth interface of relative index `eta` under diffuse light.
     pub(super) fn diffuse_reflectance(&self, eta: f32) -> f32 {
-        let known = self.diffuse_reflectances.iter().find(|(known, _)| *known == eta);
+        let known = self.diffuse_reflectances.iter().find(|(known, _)| (known - eta).abs() <= 1e-5 * eta);
         known.map_or_else(|| fresnel_diffuse_reflectance(eta), |(_, mean)| *mean)
     }
 

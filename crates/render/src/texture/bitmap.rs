@@ -3,6 +3,7 @@
 use super::{linear_to_srgb8, srgb8_to_linear};
 use photinus_geometry::{Vec2, Vec4};
 use photinus_scene::{Bitmap, BitmapPixels, TextureFilter, WrapMode};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A picture and its pyramid: level 0 is the picture, each further level about half as wide and high, down to 1 x 1.
@@ -52,18 +53,18 @@ fn box_taps(i: u32, from: u32, to: u32) -> impl Iterator<Item = (u32, f32)> {
 /// The next smaller level: every pixel is the mean of the area that it covers.
 fn halve(from: &Bitmap) -> Bitmap {
     let (width, height) = ((from.width / 2).max(1), (from.height / 2).max(1));
-    let mut pixels = Vec::with_capacity(width as usize * height as usize);
-    for y in 0..height {
-        for x in 0..width {
+    let row = |y: u32| {
+        (0..width).map(move |x| {
             let mut sum = Vec4::ZERO;
             for (sy, wy) in box_taps(y, from.height, height) {
                 for (sx, wx) in box_taps(x, from.width, width) {
                     sum += texel(from, sx, sy) * (wx * wy);
                 }
             }
-            pixels.push(sum);
-        }
-    }
+            sum
+        })
+    };
+    let pixels: Vec<Vec4> = (0..height).into_par_iter().flat_map_iter(row).collect();
     let byte = |v: f32| (v * 255.0 + 0.5).clamp(0.0, 255.0) as u8;
     let pixels = match from.pixels {
         BitmapPixels::Rgba8 { srgb: true, .. } => BitmapPixels::Rgba8 {
@@ -123,7 +124,7 @@ impl MipMap {
         Self { levels }
     }
 
-    /// Only the picture itself, for textures that are never filtered.
+    /// Only the picture itself, for textures that are read by the nearest pixel.
     pub fn without_pyramid(bitmap: &Arc<Bitmap>) -> Self {
         if is_sound(bitmap) { Self { levels: vec![Arc::clone(bitmap)] } } else { Self::grey() }
     }

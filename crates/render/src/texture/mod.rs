@@ -2,12 +2,10 @@
 
 mod bitmap;
 mod checkerboard;
-mod environment;
 mod srgb;
 mod textures;
 
 pub use bitmap::MipMap;
-pub use environment::{direction_to_equirect, environment_radiance, equirect_to_direction};
 pub use srgb::{linear_to_srgb8, srgb8_to_linear};
 pub use textures::{TextureLookup, Textures};
 

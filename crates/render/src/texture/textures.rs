@@ -54,18 +54,19 @@ impl Textures {
     /// Builds pyramids; a picture shared by several textures is prepared once.
     pub fn new(textures: &[Texture]) -> Self {
         let mut result = Self::default();
-        let mut seen: Vec<Arc<Bitmap>> = Vec::new();
+        let mut seen: Vec<(Arc<Bitmap>, bool)> = Vec::new();
         for texture in textures {
             let kind = match &texture.kind {
                 TextureKind::Bitmap { bitmap, filter, wrap, alpha } => {
-                    let map = match seen.iter().position(|other| Arc::ptr_eq(other, bitmap)) {
-                        Some(i) => i,
-                        None => {
-                            seen.push(Arc::clone(bitmap));
-                            result.maps.push(MipMap::new(bitmap));
-                            seen.len() - 1
-                        }
-                    };
+                    let filtered = *filter != TextureFilter::Nearest;
+                    let same =
+                        |(other, pyramid): &(Arc<Bitmap>, bool)| Arc::ptr_eq(other, bitmap) && *pyramid == filtered;
+                    let map = seen.iter().position(same).unwrap_or_else(|| {
+                        seen.push((Arc::clone(bitmap), filtered));
+                        let make = if filtered { MipMap::new } else { MipMap::without_pyramid };
+                        result.maps.push(make(bitmap));
+                        seen.len() - 1
+                    });
                     Kind::Bitmap { map: map as u32, filter: *filter, wrap: *wrap, alpha: *alpha }
                 }
                 TextureKind::Checkerboard { a, b } => Kind::Checkerboard { a: *a, b: *b },
@@ -164,5 +165,91 @@ impl Textures {
             Kind::VertexColor => COARSEST,
         };
         if step.is_finite() && step > 1e-7 { step } else { COARSEST }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use photinus_geometry::Affine3A;
+    use photinus_scene::BitmapPixels;
+
+    fn texture(kind: TextureKind, to_uv: Affine3A) -> Texture {
+        Texture { name: "test".into(), kind, to_uv }
+    }
+
+    fn at(u: f32, v: f32) -> TextureLookup {
+        TextureLookup { uv: Vec2::new(u, v), footprint: 0.0, vertex_color: Vec3::new(0.1, 0.2, 0.3) }
+    }
+
+    fn bitmap(width: u32, height: u32, pixel: impl Fn(u32, u32) -> [f32; 4]) -> Arc<Bitmap> {
+        let data = (0..width * height).map(|i| pixel(i % width, i / width)).collect();
+        Arc::new(Bitmap { width, height, pixels: BitmapPixels::RgbaF32(data) })
+    }
+
+    fn picture(bitmap: &Arc<Bitmap>, filter: TextureFilter, alpha: bool) -> TextureKind {
+        TextureKind::Bitmap { bitmap: Arc::clone(bitmap), filter, wrap: WrapMode::Repeat, alpha }
+    }
+
+    #[test]
+    fn kinds_scale_nest_and_transform() {
+        let dots = bitmap(2, 1, |x, _| [x as f32, 0.5, 0.25, 0.75]);
+        let twice = Affine3A::from_scale(Vec3::new(2.0, 1.0, 1.0));
+        let shifted = Affine3A::from_translation(Vec3::new(0.5, 0.0, 0.0));
+        let textures = Textures::new(&[
+            texture(picture(&dots, TextureFilter::Nearest, false), Affine3A::IDENTITY),
+            texture(picture(&dots, TextureFilter::Nearest, true), Affine3A::IDENTITY),
+            texture(TextureKind::Scale { input: ColorInput::Texture(TextureId(0)), factor: 4.0 }, Affine3A::IDENTITY),
+            texture(TextureKind::VertexColor, Affine3A::IDENTITY),
+            texture(
+                TextureKind::Checkerboard { a: ColorInput::Texture(TextureId(3)), b: ColorInput::Constant(Vec3::ONE) },
+                twice,
+            ),
+            texture(picture(&dots, TextureFilter::Nearest, false), shifted),
+        ]);
+        let color = |id, u, v| textures.color(ColorInput::Texture(TextureId(id)), &at(u, v));
+        assert_eq!(color(0, 0.75, 0.5), Vec3::new(1.0, 0.5, 0.25));
+        assert_eq!(color(1, 0.75, 0.5), Vec3::splat(0.75));
+        assert_eq!(color(2, 0.75, 0.5), Vec3::new(4.0, 2.0, 1.0));
+        assert_eq!(color(3, 0.1, 0.1), Vec3::new(0.1, 0.2, 0.3));
+        assert_eq!(color(4, 0.2, 0.1), Vec3::new(0.1, 0.2, 0.3), "u = 0.2 is 0.4 on the board");
+        assert_eq!(color(4, 0.3, 0.1), Vec3::ONE);
+        assert_eq!(color(5, 0.25, 0.5).x, 1.0, "shifted by half the picture");
+        assert_eq!(color(77, 0.0, 0.0), GREY);
+        assert_eq!(textures.float(FloatInput::Texture(TextureId(1)), &at(0.1, 0.1)), 0.75);
+        assert_eq!(textures.float(FloatInput::Constant(0.3), &at(0.1, 0.1)), 0.3);
+        assert_eq!(textures.maps.len(), 1, "one picture, prepared once");
+    }
+
+    /// The footprint is stretched with the coordinates: a picture repeated 8 times reaches its mean 8 times sooner.
+    #[test]
+    fn footprints_follow_the_transform() {
+        let stripes = bitmap(16, 16, |x, _| [f32::from(x % 2 == 0), 0.0, 0.0, 1.0]);
+        let repeated = Affine3A::from_scale(Vec3::splat(8.0));
+        let textures = Textures::new(&[
+            texture(picture(&stripes, TextureFilter::Bilinear, false), Affine3A::IDENTITY),
+            texture(picture(&stripes, TextureFilter::Bilinear, false), repeated),
+        ]);
+        let red = |id, footprint| {
+            let lookup = TextureLookup { footprint, ..at(0.5 / 16.0 / if id == 1 { 8.0 } else { 1.0 }, 0.5) };
+            textures.color(ColorInput::Texture(TextureId(id)), &lookup).x
+        };
+        assert_eq!(red(0, 0.0), 1.0);
+        assert!((red(0, 2.0 / 16.0) - 0.5).abs() < 1e-5);
+        assert!((red(1, 2.0 / 16.0 / 8.0) - 0.5).abs() < 1e-5);
+        assert_eq!(red(1, 0.5 / 16.0 / 8.0), 1.0);
+    }
+
+    #[test]
+    fn gradients_are_slopes() {
+        let ramp = bitmap(32, 32, |x, y| {
+            let height = 3.0 * (x as f32 + 0.5) / 32.0 + 0.5 * (y as f32 + 0.5) / 32.0;
+            [height, height, height, 1.0]
+        });
+        let textures = Textures::new(&[texture(picture(&ramp, TextureFilter::Bilinear, false), Affine3A::IDENTITY)]);
+        let gradient = textures.gradient(TextureId(0), &at(0.4, 0.6));
+        // Rows are counted downwards, v upwards.
+        assert!((gradient - Vec2::new(3.0, -0.5)).length() < 1e-2, "{gradient}");
+        assert_eq!(textures.gradient(TextureId(9), &at(0.0, 0.0)), Vec2::ZERO);
     }
 }

@@ -43,16 +43,10 @@ pub fn push(builder: &mut Builder, place: Place, shape: RoughInterface, weight: 
     let cos = builder.wo(place).z;
     let model = shape.facets.model;
     let plain = fresnel_dielectric(cos, shape.eta).0;
-    let (outside, inside) = (
-        builder.materials.interface_table(model, shape.eta),
-        builder.materials.interface_table(model, 1.0 / shape.eta),
-    );
-    let alpha = shape.facets.table_alpha();
-    let [r, t] = match (outside, inside) {
-        (Some(table), _) => table.at(alpha, cos, false),
-        (None, Some(table)) => table.at(alpha, cos, true),
-        (None, None) => [plain, 1.0 - plain],
-    };
+    let inside = !place.front;
+    let relative = if inside { 1.0 / shape.eta } else { shape.eta };
+    let table = builder.materials.interface_table(model, relative);
+    let [r, t] = table.map_or([plain, 1.0 - plain], |table| table.at(shape.facets.table_alpha(), cos, inside));
     let tinted = shape.tint.reflectance(plain, cos) * (r / plain.max(1e-6));
     let albedo = [tinted * shape.reflectance * weight, shape.transmittance * t * weight];
     let set = {

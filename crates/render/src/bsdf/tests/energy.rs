@@ -190,14 +190,16 @@ fn albedo_estimates_are_close() {
             continue;
         }
         let &(ref materials, id) = subject.prepare();
-        for (z, phi) in [(0.95, 0.3), (0.5, 1.0), (0.25, 2.0)] {
+        for (z, phi) in [(0.95, 0.3), (0.5, 1.0), (0.25, 2.0), (-0.6, 1.0)] {
             let bsdf = materials.resolve(id, &flat_point(), direction(z, phi));
             let exact = ["diffuse", "dielectric", "thin", "conductor", "plastic", "rough-plastic", "null"];
+            // Tables know one roughness, not two.
+            let inexact = if subject.name.contains("[0.1, 0.6]") { 0.12 } else { 0.06 };
             let exact = exact.iter().any(|name| subject.name.starts_with(name));
             for set in [LobeSet::REFLECTION, LobeSet::TRANSMISSION] {
                 let (mean, error) = furnace(&bsdf, set, TransportMode::Importance, t as u32, 2000);
                 let off = (bsdf.albedo(set) - mean).abs().max_element();
-                let bound = if exact { 0.01 } else { 0.06 } + 4.0 * error;
+                let bound = if exact { 0.01 } else { inexact } + 4.0 * error;
                 assert!(off < bound, "{} z {z} {set:?}: {} against {mean}", subject.name, bsdf.albedo(set));
             }
         }
