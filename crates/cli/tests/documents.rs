@@ -102,7 +102,14 @@ fn render_and_compare() {
     assert_eq!(document["stopped"], "passes");
     assert_eq!(document["photons"]["emitted"], 9000, "three passes of 3000");
     assert_eq!(document["rays"]["camera"], 24 * 20 * 3);
-    for (count, least) in [("intersect", "tests_per_ray"), ("search", "photons_found_mean")] {
+    for (count, least) in [
+        ("intersect", "tests_per_ray"),
+        ("intersect", "seconds"),
+        ("accel", "nodes_visited"),
+        ("search", "photons_found_mean"),
+        ("search", "photons_tested"),
+        ("search", "seconds"),
+    ] {
         assert!(document[count][least].as_f64().unwrap() > 0.0, "{count}.{least}");
     }
 

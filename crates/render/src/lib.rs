@@ -27,7 +27,7 @@ pub use counters::{Counters, PhotonCounts, PhotonPower, RayCounts};
 pub use film::{Aov, Film, FilmLayout};
 pub use light::{LightSample, Lights, PhotonStart, VisibleRegion};
 pub use memory::RenderMemory;
-pub use renderer::{RenderError, Renderer};
+pub use renderer::{RenderError, Renderer, SearchBuilder};
 pub use settings::{Mode, Settings};
 pub use surface::SurfacePoint;
 pub use world::{Compiled, World};

@@ -15,7 +15,7 @@ use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
 use crate::world::World;
 use photinus_num::StreamKind;
-use photinus_photons::{BuildOptions, Kernel, PhotonError};
+use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError, Search};
 
 /// Shrinking of the radius, Knaus and Zwicker 2011, section 5: the area falls by (i + ALPHA) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
@@ -31,10 +31,15 @@ pub enum RenderError {
     Photons(#[from] PhotonError),
 }
 
+/// Builds a photon search, by its name, over the photons of a pass.
+pub type SearchBuilder<'w> =
+    dyn Fn(&str, Vec<Photon>, &BuildOptions) -> Result<Box<dyn Search>, PhotonError> + Send + Sync + 'w;
+
 /// A running render.
 pub struct Renderer<'w> {
     world: &'w World,
     settings: Settings,
+    build_search: Box<SearchBuilder<'w>>,
     layout: FilmLayout,
     camera: CameraModel,
     filter: FilterSampler,
@@ -75,6 +80,7 @@ impl<'w> Renderer<'w> {
         let lights = Lights::new(world, pilot::visible_region(world, &points), &view);
         let mut renderer = Self {
             world,
+            build_search: Box::new(photinus_photons::build),
             layout,
             camera,
             filter: FilterSampler::new(world.film.filter),
@@ -102,6 +108,11 @@ impl<'w> Renderer<'w> {
             };
         }
         Ok(renderer)
+    }
+
+    /// Has `build` make the searches of all passes to come, for callers that time or replace them.
+    pub fn build_searches_with(&mut self, build: Box<SearchBuilder<'w>>) {
+        self.build_search = build;
     }
 
     /// Photons of a pass, or of all in the modes with one map.
@@ -236,7 +247,7 @@ impl<'w> Renderer<'w> {
         let name = &self.settings.search;
         let map = |photons, radius| -> Result<Map, PhotonError> {
             let options = BuildOptions { radius_hint: radius };
-            Ok(Map { search: photinus_photons::build(name, photons, &options)?, radius, kernel })
+            Ok(Map { search: (self.build_search)(name, photons, &options)?, radius, kernel })
         };
         Ok(Maps {
             global: map(global, radii.global)?,

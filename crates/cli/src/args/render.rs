@@ -56,14 +56,15 @@ pub struct RenderArgs {
     /// Stop after so many passes [default: 32 where no other stop is given]
     #[arg(long, value_name = "N", value_parser = values::count, help_heading = "When to stop, whichever comes first")]
     pub passes: Option<u32>,
-    /// Stop when the mean relative error of the pixels, estimated from the passes, is below E
+    /// Stop when the mean relative squared error of the pixels, estimated from the passes, is at most E
     #[arg(long, value_name = "E", value_parser = values::positive, help_heading = "When to stop, whichever comes first")]
     pub target_error: Option<f64>,
 
     /// Size of the picture in pixels [default: as the scene says]
     #[arg(long, value_name = "WxH", value_parser = values::size, help_heading = "View")]
     pub size: Option<Size>,
-    /// Another view: ten numbers, the opening in degrees along the shorter edge [default: as the scene says]
+    /// Another view: ten numbers, the last the opening in degrees along the axis that the scene's camera measures its
+    /// own along, or horizontally [default: as the scene says]
     #[arg(long, value_name = "ORIGIN,TARGET,UP,FOV", value_parser = values::camera, allow_hyphen_values = true,
         help_heading = "View")]
     pub camera: Option<CameraValue>,
@@ -87,7 +88,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "NAME", default_value = names::BACKEND.default, value_parser = parser(names::BACKEND),
         help_heading = "Members")]
     pub backend: String,
-    /// Configuration of the hardware behind --backend
+    /// Configuration of the hardware behind --backend (not built yet)
     #[arg(long, value_name = "NAME|FILE.toml", help_heading = "Members")]
     pub hardware: Option<String>,
     /// Replace spheres by triangles that are off by at most E scene units
@@ -109,7 +110,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = values::finite_f32,
         allow_hyphen_values = true, help_heading = "Results")]
     pub exposure: f32,
-    /// Remove noise from the finished picture
+    /// Remove noise from the finished picture (not built yet)
     #[arg(long, help_heading = "Results")]
     pub denoise: bool,
     /// Write counts, seconds and memory as JSON
@@ -121,10 +122,10 @@ pub struct RenderArgs {
     /// No progress, no warnings
     #[arg(long, help_heading = "Results")]
     pub quiet: bool,
-    /// Go on from a file of an earlier render
+    /// Go on from a file of an earlier render (not built yet)
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     pub resume: Option<PathBuf>,
-    /// Record every ray and search with its answer
+    /// Record every ray and search with its answer (not built yet)
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     pub record_queries: Option<PathBuf>,
 }

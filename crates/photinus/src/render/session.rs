@@ -9,7 +9,7 @@ use super::stop::{Spent, StopReason};
 use super::timeline::Timeline;
 use super::{RenderOptions, Stop};
 use crate::machine::{Machine, cpu_seconds};
-use crate::query_clock::{QueryClock, TimedStructure};
+use crate::query_clock::{QueryClock, TimedSearch, TimedStructure};
 use crate::{Error, Result};
 use photinus_accel::{BuildOptions, StructureSummary};
 use photinus_geometry::{Hit, Ray};
@@ -178,6 +178,11 @@ impl Session {
         let mut reason = StopReason::Interrupted;
         let mut plan = None;
         if let Some(renderer) = &mut renderer {
+            let clock = &self.clock;
+            renderer.build_searches_with(Box::new(move |name, photons, options| {
+                let search = photinus_photons::build(name, photons, options)?;
+                Ok(Box::new(TimedSearch::new(search, clock.clone())))
+            }));
             let made = self.plan(renderer);
             watcher.planned(&made);
             plan = Some(made);
@@ -263,7 +268,8 @@ impl Session {
         let counters = renderer.map(|r| *r.counters()).unwrap_or_default();
         let (wall_secs, cpu_secs) = self.options.stop.clock();
         let [_, _, width, height] = self.window();
-        let query_secs = self.clock.seconds();
+        let ray_secs = self.clock.ray_seconds();
+        let test_secs = ray_secs * self.clock.test_share().unwrap_or(0.0);
         let settings = &self.options.settings;
         Stats {
             scene: self.world.name.clone(),
@@ -281,9 +287,9 @@ impl Session {
                 eye_pass: timeline.spent(Phase::EyePass),
             },
             rays: RayStats::of(&counters),
-            intersect: IntersectStats::of(&counters, query_secs),
-            accel: AccelStats::of(&counters, self.structure.clone(), query_secs),
-            search: SearchStats::of(&counters, &settings.search),
+            intersect: IntersectStats::of(&counters, test_secs),
+            accel: AccelStats::of(&counters, self.structure.clone(), ray_secs - test_secs),
+            search: SearchStats::of(&counters, &settings.search, self.clock.search_seconds()),
             photons: PhotonStats::of(&counters),
             other: BTreeMap::new(),
             memory: MemoryStats::of(plan.map(|plan| &plan.memory)),

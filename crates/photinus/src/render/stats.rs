@@ -49,7 +49,8 @@ pub struct IntersectStats {
     pub tests: f64,
     /// Tests of a ray, in the mean.
     pub tests_per_ray: f64,
-    /// Thread seconds in ray queries, tests and traversal together.
+    /// Thread seconds in tests: the share of the ray queries' time that a fit of the counted batches' times to their
+    /// nodes and tests gives the tests.
     pub seconds: f64,
 }
 
@@ -66,7 +67,7 @@ pub struct AccelStats {
     pub triangles_per_leaf: f64,
     /// Levels below the root.
     pub depth: u32,
-    /// Thread seconds in ray queries, tests and traversal together.
+    /// Thread seconds in traversal: the rest of the ray queries' time.
     pub seconds: f64,
     /// Rays of the batches that were counted.
     pub rays_counted: u64,
@@ -85,7 +86,7 @@ pub struct SearchStats {
     pub photons_found_mean: f64,
     /// Photons tested by all searches, scaled up from the batches that run the counting kernel.
     pub photons_tested: f64,
-    /// Thread seconds in photon searches and estimates.
+    /// Thread seconds in photon searches, with the sums that they make.
     pub seconds: f64,
     /// Searches of the batches that were counted.
     pub searches_counted: u64,
@@ -210,14 +211,14 @@ impl AccelStats {
 }
 
 impl SearchStats {
-    pub(super) fn of(counters: &Counters, name: &str) -> Self {
+    pub(super) fn of(counters: &Counters, name: &str, seconds: f64) -> Self {
         let sampled = counters.sampled_searches;
         Self {
             name: name.to_owned(),
             searches: counters.searches,
             photons_found_mean: ratio(counters.photons_found, counters.searches),
             photons_tested: ratio(sampled.photons_tested, sampled.searches) * counters.searches as f64,
-            seconds: 0.0,
+            seconds,
             searches_counted: sampled.searches,
         }
     }
