@@ -9,7 +9,7 @@ pub struct LoadOptions {
     pub defines: Vec<(String, String)>,
     /// Most triangles of the whole scene, instances expanded.
     pub max_triangles: u64,
-    /// Most bytes of one text scene file (XML, after no expansion).
+    /// Most bytes of one XML file.
     pub max_xml_bytes: u64,
     /// Most bytes of one mesh or texture file.
     pub max_file_bytes: u64,

@@ -23,7 +23,7 @@ impl Writer<'_> {
                 let other = if z.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
                 let x = z.cross(other).normalize_or(DVec3::X);
                 let matrix3 = DMat3::from_cols(x, z.cross(x), z);
-                self.to_world(&DAffine3 { matrix3, translation: position.as_dvec3() });
+                self.placement(&DAffine3 { matrix3, translation: position.as_dvec3() });
                 self.rgb("intensity", *intensity);
                 self.xml.value("float", "cutoff_angle", f64::from(*cutoff_angle).to_degrees());
                 self.xml.value("float", "beam_width", f64::from(*beam_width).to_degrees());
@@ -45,7 +45,7 @@ impl Writer<'_> {
                     self.xml.value("boolean", "raw", true);
                 }
                 self.xml.value("float", "scale", scale);
-                self.to_world(&double(to_world));
+                self.placement(&double(to_world));
             }
         }
         self.xml.close("emitter");
@@ -57,7 +57,7 @@ impl Writer<'_> {
     }
 
     /// A placing transform as a matrix.
-    fn to_world(&mut self, map: &DAffine3) {
+    fn placement(&mut self, map: &DAffine3) {
         let (m, t) = (&map.matrix3, map.translation);
         let row = |k: usize| [m.x_axis[k], m.y_axis[k], m.z_axis[k], t[k]];
         let rows = [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]];

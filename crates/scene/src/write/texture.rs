@@ -48,12 +48,12 @@ impl Writer<'_> {
                     self.xml.value("string", "channel", "all");
                 }
                 // Mitsuba's v runs down the picture.
-                self.to_uv(&(flip_v() * to_uv * flip_v()));
+                self.uv_map(&(flip_v() * to_uv * flip_v()));
             }
             TextureKind::Checkerboard { a, b } => {
                 self.color("color0", a);
                 self.color("color1", b);
-                self.to_uv(&(to_uv * flip_v()));
+                self.uv_map(&(to_uv * flip_v()));
             }
             TextureKind::Scale { input, factor } => {
                 self.xml.value("float", "scale", factor);
@@ -66,7 +66,7 @@ impl Writer<'_> {
     }
 
     /// The plane's part of a map of texture coordinates.
-    fn to_uv(&mut self, map: &DAffine3) {
+    fn uv_map(&mut self, map: &DAffine3) {
         if *map == DAffine3::IDENTITY {
             return;
         }

@@ -25,6 +25,25 @@ fn check(root: &Path, file: &str, triangles: usize, spheres: usize, allow_outsid
     scene
 }
 
+/// Scenes that read files outside their folder.
+const OUTSIDE: &[(&str, usize, usize)] = &[
+    ("mitsuba-tests/tests/scenes/floating_sphere/test_directional_direct.xml", 32_514, 0),
+    ("mitsuba-tests/tests/scenes/infinite_mirrors/scene_path.xml", 97_536, 0),
+    ("mitsuba-tests/tests/scenes/instancing/test_instancing_path.xml", 97_542, 3),
+    ("mitsuba-tests/tests/scenes/texture_interp/test_texture_interp_direct.xml", 12, 0),
+];
+
+#[test]
+fn scenes_that_reach_outside_need_permission() {
+    let Some(root) = real_scenes() else { return };
+    for &(file, triangles, spheres) in OUTSIDE {
+        let refused = load(&root.join(file), &LoadOptions::default()).unwrap_err();
+        assert!(one_line(&refused).contains("--allow-outside"), "{refused}");
+        let scene = check(&root, file, triangles, spheres, true);
+        clean(&scene);
+    }
+}
+
 #[test]
 fn all_mitsuba_scenes_load() {
     let Some(root) = real_scenes() else { return };
