@@ -74,3 +74,87 @@ pub fn tessellate_spheres(scene: &mut Scene, max_error: f32) -> usize {
     }
     count
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
+
+    /// Largest distance between a sphere and its triangles, at corners, edge middles and face middles.
+    fn error(mesh: &Mesh, sphere: Sphere) -> f32 {
+        let off = |p: Vec3| ((p - sphere.center).length() - sphere.radius).abs();
+        let of_face = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+            [a, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0].map(off).into_iter().fold(0.0, f32::max)
+        };
+        mesh.triangles.iter().map(of_face).fold(0.0, f32::max)
+    }
+
+    #[test]
+    fn the_error_is_kept() {
+        for radius in [0.01, 1.0, 300.0] {
+            let sphere = Sphere { center: Vec3::new(1.0, -2.0, 3.0), radius };
+            for relative in [0.1, 0.01, 1e-3] {
+                let segments = sphere_segments(radius, relative * radius);
+                let mesh = sphere_mesh(sphere, AXES, false, segments);
+                assert!(error(&mesh, sphere) <= 1.01 * relative * radius, "{radius} {relative} {segments}");
+            }
+        }
+        for (radius, error) in [(1.0, 0.0), (1.0, f32::NAN), (f32::MAX, 1e-30), (1e-30, f32::INFINITY)] {
+            assert!((8..=4096).contains(&sphere_segments(radius, error)), "{radius} {error}");
+        }
+    }
+
+    #[test]
+    fn spheres_are_closed_and_look_the_right_way() {
+        let sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
+        for (axes, mirrored) in [(AXES, false), ([Vec3::Y, Vec3::X, Vec3::Z], true)] {
+            for flip in [false, true] {
+                let mesh = sphere_mesh(sphere, axes, flip, 64);
+                assert_eq!(mesh.triangles.len(), 64 * 2 * 31);
+                let sign = if flip { -1.0 } else { 1.0 };
+                for t in &mesh.triangles {
+                    let p = t.map(|v| mesh.positions[v as usize]);
+                    let face = (p[1] - p[0]).cross(p[2] - p[0]);
+                    assert!(sign * face.dot(p[0] + p[1] + p[2]) > 0.0, "{mirrored} {flip}");
+                    assert!(t.iter().all(|&v| mesh.normals[v as usize].dot(face) > 0.0));
+                }
+                // The volume of a closed surface that is nearly the sphere's.
+                let six: f32 = mesh
+                    .triangles
+                    .iter()
+                    .map(|t| t.map(|v| mesh.positions[v as usize]))
+                    .map(|p| p[0].dot(p[1].cross(p[2])))
+                    .sum();
+                assert!((sign * six / 6.0 / (4.0 / 3.0 * std::f32::consts::PI) - 1.0).abs() < 5e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn texture_coordinates_are_those_of_the_exact_sphere() {
+        let axes = [Vec3::Z, Vec3::X, Vec3::Y];
+        let mesh = sphere_mesh(Sphere { center: Vec3::ONE, radius: 2.0 }, axes, false, 16);
+        for (p, uv) in mesh.positions.iter().zip(&mesh.uvs) {
+            let d = (*p - Vec3::ONE) / 2.0;
+            let local = Vec3::new(d.dot(axes[0]), d.dot(axes[1]), d.dot(axes[2]));
+            let v = 1.0 - libm::acosf(local.z.clamp(-1.0, 1.0)) / std::f32::consts::PI;
+            assert!((v - uv.y).abs() < 1e-3, "{local} {uv}");
+            if local.truncate().length() > 1e-3 {
+                let u = libm::atan2f(local.y, local.x) / std::f32::consts::TAU;
+                let off = u - uv.x;
+                assert!((off - off.round()).abs() < 1e-4, "{local} {uv}");
+            }
+        }
+    }
+
+    #[test]
+    fn all_spheres_of_a_scene_become_triangles() {
+        let mut scene = crate::builtin::build("two-spheres").expect("the default scene");
+        let before = scene.bounds();
+        assert_eq!(tessellate_spheres(&mut scene, 1e-3), 2);
+        assert_eq!(tessellate_spheres(&mut scene, 1e-3), 0);
+        assert!((scene.bounds().size() - before.size()).length() < 1e-2);
+    }
+}

@@ -86,6 +86,7 @@ pub fn last_material(scene: &Scene) -> &Material {
 }
 
 /// The folder of real scenes; says so in one line where it is not set.
+#[allow(clippy::print_stdout, reason = "a suite that does not run has to say so")]
 pub fn real_scenes() -> Option<PathBuf> {
     match std::env::var_os("PHOTINUS_SCENES") {
         Some(path) => Some(Path::new(&path).to_path_buf()),

@@ -37,6 +37,58 @@ fn truncation_anywhere_is_survived() {
     }
 }
 
+/// A scene with a bit of everything, for mutations.
+const RICH: &str = r#"<scene version="3.0.0"><default name="a" value="0.5"/><path value="."/>
+<integrator type="moment"><integrator type="path"><integer name="max_depth" value="8"/></integrator></integrator>
+<sensor type="thinlens"><float name="fov" value="40"/><float name="aperture_radius" value="0.1"/>
+<transform name="to_world"><scale x="-1"/><lookat origin="0 1 5" target="0, 0, 0" up="0 1 0"/></transform>
+<film type="hdrfilm"><integer name="width" value="32"/><integer name="crop_width" value="8"/><rfilter type="lanczos"/></film></sensor>
+<texture type="checkerboard" id="t"><rgb name="color0" value="$a 0.2 #"/></texture>
+<bsdf type="twosided" id="m"><bsdf type="roughplastic"><ref name="diffuse_reflectance" id="t"/></bsdf></bsdf>
+<bsdf type="blendbsdf" id="b"><float name="weight" value="0.5"/><ref id="m"/><bsdf type="conductor"><string name="material" value="Au"/></bsdf></bsdf>
+<shape type="shapegroup" id="g"><shape type="cube"><ref id="b"/></shape><shape type="sphere"><float name="radius" value="2"/></shape></shape>
+<shape type="instance"><ref id="g"/><transform name="to_world"><rotate x="1" angle="30"/><matrix value="1 0 0 0 1 0 0 0 1"/></transform></shape>
+<shape type="cylinder"><point name="p1" value="0 0 2"/><emitter type="area"><spectrum name="radiance" value="400:1, 700:2"/></emitter></shape>
+<emitter type="spot"><float name="cutoff_angle" value="30"/></emitter><emitter type="constant"/></scene>"#;
+
+#[test]
+fn random_changes_are_survived() {
+    let whole = RICH.replace("0.2 #", "0.2 0.3");
+    let folder = Folder::new();
+    let path = folder.write("scene.xml", &whole);
+    assert!(warnings(&load(&path, &LoadOptions::default()).unwrap()).is_empty());
+    // A linear congruential generator (Knuth, MMIX): the same changes in every run. Seed 1.
+    let mut state = 1_u64;
+    let mut next = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let pieces: Vec<&str> = whole.split(['"', '<', '>', ' ']).filter(|p| !p.is_empty()).collect();
+    let (mut loaded, mut refused) = (0, 0);
+    for round in 0..1500 {
+        let mut text = whole.clone();
+        for _ in 0..=next(3) {
+            let at = next(text.len());
+            if round % 2 == 0 {
+                // One word by another: stays XML, changes its meaning.
+                let word = pieces[next(pieces.len())];
+                text = text.replacen(word, pieces[next(pieces.len())], 1 + next(2));
+            } else if text.is_char_boundary(at) {
+                text.insert(at, char::from(next(128) as u8));
+            }
+        }
+        let path = folder.write("scene.xml", &text);
+        match load(&path, &LoadOptions::default()) {
+            Ok(_) => loaded += 1,
+            Err(e) => {
+                one_line(&e);
+                refused += 1;
+            }
+        }
+    }
+    assert!(loaded > 50 && refused > 200, "{loaded} {refused}");
+}
+
 #[test]
 fn wrong_values_are_errors_with_their_line() {
     for xml in [

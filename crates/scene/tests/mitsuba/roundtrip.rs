@@ -55,7 +55,7 @@ fn mesh(normals: bool, uvs: bool, colors: bool) -> Mesh {
     let positions: Vec<Vec3> = (0..6).map(|i| odd3(i * 7) * 10.0 - Vec3::new(3.3, 0.0, 1e-7)).collect();
     let triangles = vec![[0, 1, 2], [2, 1, 3], [4, 5, 0], [5, 3, 1]];
     // Vertex normals on the side that the faces look to.
-    let mut sums = vec![Vec3::ZERO; 6];
+    let mut sums = [Vec3::ZERO; 6];
     let mut triangles: Vec<[u32; 3]> = triangles;
     for t in &mut triangles {
         let p = t.map(|v| positions[v as usize]);

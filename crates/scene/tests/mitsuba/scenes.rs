@@ -49,6 +49,12 @@ fn all_mitsuba_scenes_load() {
     let Some(root) = real_scenes() else { return };
     for &(file, triangles, spheres) in SCENES {
         let scene = check(&root, file, triangles, spheres, false);
-        println!("{file}: {:#?}", warnings(&scene));
+        let expected: &[&str] = match file {
+            "rooms/living-room-mitsuba/scene.xml" => {
+                &["22: unknown parameter \"high_quality_edges\" of film \"hdrfilm\": ignored"]
+            }
+            _ => &[],
+        };
+        assert_eq!(warnings(&scene), expected, "{file}");
     }
 }
