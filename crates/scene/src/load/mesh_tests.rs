@@ -374,3 +374,25 @@ fn damaged_real_files_are_read_or_refused_and_nothing_else() {
     }
     assert!(cases > 2000, "{cases} cases");
 }
+
+/// Prints the speed at which OBJ text becomes meshes; the floor is far below what an idle machine does.
+#[test]
+fn obj_text_is_read_fast() {
+    let Some(root) = scenes() else { return };
+    let mut files = Vec::new();
+    files_under(&root.join("rooms/living-room-mitsuba/models"), &mut files);
+    let texts: Vec<Vec<u8>> = files.iter().filter(|p| is_mesh(p)).map(|p| std::fs::read(p).unwrap()).collect();
+    let bytes: usize = texts.iter().map(Vec::len).sum();
+    let seconds = (0..3)
+        .map(|_| {
+            let started = std::time::Instant::now();
+            for text in &texts {
+                assert!(!obj::from_bytes(text, MissingNormals::LeaveOut).unwrap().0.parts.is_empty());
+            }
+            started.elapsed().as_secs_f64()
+        })
+        .fold(f64::INFINITY, f64::min);
+    let megabytes_per_second = bytes as f64 / seconds / 1e6;
+    eprintln!("OBJ: {bytes} bytes at {megabytes_per_second:.0} MB/s");
+    assert!(megabytes_per_second > 15.0, "{megabytes_per_second:.0} MB/s");
+}

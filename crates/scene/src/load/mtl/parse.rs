@@ -87,6 +87,10 @@ pub(crate) struct RawLibrary {
     pub(crate) notes: Vec<Fault>,
 }
 
+/// Most materials of a library, and most faults that are noted.
+const MAX_MATERIALS: usize = 1 << 16;
+const MAX_NOTES: usize = 1000;
+
 /// Reads a material library; nothing in it is bad enough to refuse it.
 pub(crate) fn parse(bytes: &[u8]) -> RawLibrary {
     let bytes = super::super::text::decode(bytes);
@@ -105,8 +109,14 @@ pub(crate) fn parse(bytes: &[u8]) -> RawLibrary {
 fn statement(keyword: &[u8], text: &mut Text<'_>, library: &mut RawLibrary) {
     let line = text.line();
     let key = keyword.to_ascii_lowercase();
+    // A file of nothing but faults must not become a list of as many.
+    library.notes.truncate(MAX_NOTES);
     if key == b"newmtl" {
         let name = name(text.rest_of_line());
+        if library.materials.len() >= MAX_MATERIALS {
+            library.notes.push(Fault::new(line, format!("more than {MAX_MATERIALS} materials: the rest is ignored")));
+            return;
+        }
         library.materials.push(RawMaterial { name, line, ..RawMaterial::default() });
         return;
     }

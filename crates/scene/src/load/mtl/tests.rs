@@ -213,6 +213,11 @@ fn pictures_lie_where_options_put_them() {
     assert_eq!(data[0], [188, 137, 255, 255]);
     assert!(made.warnings.is_empty(), "{:?}", made.warnings);
 
+    let made = make_in(folder.path(), "newmtl m\nKd 0.5 0.5 0.5\nmap_Kd white.png\n");
+    let Material::Diffuse { reflectance: ColorInput::Texture(id) } = made.innermost() else { panic!() };
+    let TextureKind::Scale { factor, .. } = made.draft.textures[id.0 as usize].kind else { panic!() };
+    assert_eq!(factor, 0.5, "a grey tint needs no copy of the picture");
+
     let missing = make_in(
         folder.path(),
         "newmtl m\nKd 0.9 0 0\nmap_Kd gone.png\nmap_Ks gone.png\nKs 0.1 0.1 0.1\nbump gone.png\n",

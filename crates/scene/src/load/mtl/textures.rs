@@ -9,6 +9,9 @@ use photinus_geometry::{Affine3A, Vec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Most bytes of pictures beyond which none is copied for its tint.
+const MAX_TINTED_BYTES: usize = 1 << 30;
+
 /// Where pictures are looked for, and where textures go.
 pub(super) struct Textures<'a, 'c> {
     pub(super) library: &'a Library,
@@ -18,17 +21,34 @@ pub(super) struct Textures<'a, 'c> {
 
 impl Textures<'_, '_> {
     /// A colour times `tint`. A missing picture is a warning and either mid-grey (`show_missing`) or none.
+    ///
+    /// A coloured tint makes a copy of the picture; a library with very many of them gets grey ones instead.
     pub(super) fn color(&mut self, map: &MapRef, tint: Vec3, show_missing: bool) -> Option<ColorInput> {
         let tint = tint * map.gain;
         if map.base != 0.0 {
             self.warn(map, "the base value of -mm is not supported: ignored");
         }
-        let bitmap = match self.bitmap(map, BitmapEncoding::Auto) {
-            Some(bitmap) => tinted(&bitmap, tint),
-            None if show_missing => grey_pixel(),
-            None => return None,
+        let Some(bitmap) = self.bitmap(map, BitmapEncoding::Auto) else {
+            return show_missing.then(|| ColorInput::Texture(self.add(map, grey_pixel(), false)));
         };
-        Some(ColorInput::Texture(self.add(map, bitmap, map.alpha)))
+        let grey = tint.x == tint.y && tint.y == tint.z;
+        if grey || self.held_bytes() + bitmap.bytes() > MAX_TINTED_BYTES {
+            let plain = ColorInput::Texture(self.add(map, bitmap, map.alpha));
+            let factor = (tint.x + tint.y + tint.z) / 3.0;
+            return Some(if factor == 1.0 { plain } else { self.scaled(map, plain, factor) });
+        }
+        Some(ColorInput::Texture(self.add(map, tinted(&bitmap, tint), map.alpha)))
+    }
+
+    fn scaled(&mut self, map: &MapRef, input: ColorInput, factor: f32) -> ColorInput {
+        let kind = TextureKind::Scale { input, factor };
+        ColorInput::Texture(self.draft.add_texture(Texture { name: map.file.clone(), kind, to_uv: Affine3A::IDENTITY }))
+    }
+
+    /// Bytes of the pictures of all textures, shared ones once for each.
+    fn held_bytes(&self) -> usize {
+        let bytes = |t: &Texture| if let TextureKind::Bitmap { bitmap, .. } = &t.kind { bitmap.bytes() } else { 0 };
+        self.draft.textures.iter().map(bytes).sum()
     }
 
     /// A number: the luminance of a picture of linear values.

@@ -11,6 +11,9 @@ pub(super) const NONE: u32 = u32::MAX;
 const LIMIT: usize = 1 << 29;
 /// Unknown keywords mentioned one by one.
 const MAX_UNKNOWN: usize = 16;
+/// Most names of materials, and most libraries.
+const MAX_MATERIALS: u32 = 1 << 20;
+const MAX_LIBRARIES: usize = 64;
 
 /// A corner of a face: indices from 0 into positions, texture coordinates and normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -94,10 +97,7 @@ impl<'a> Parser<'a> {
             b"vt" => self.texture_coordinate(),
             b"vn" => self.normal(),
             b"f" | b"fo" => self.face(),
-            b"usemtl" => {
-                self.use_material();
-                Ok(())
-            }
+            b"usemtl" => self.use_material(),
             b"g" | b"o" => {
                 self.group();
                 Ok(())
@@ -107,8 +107,7 @@ impl<'a> Parser<'a> {
                 Ok(())
             }
             b"mtllib" => {
-                let line = self.text.line();
-                self.out.libraries.push((line, name(self.text.rest_of_line())));
+                self.library();
                 Ok(())
             }
             _ => {
@@ -275,14 +274,28 @@ impl<'a> Parser<'a> {
         self.run.get_or_insert_with(|| last.unwrap_or(Run { first_face: 0, material: None, group: None, smoothing: 0 }))
     }
 
-    fn use_material(&mut self) {
+    fn library(&mut self) {
+        let line = self.text.line();
+        let names = name(self.text.rest_of_line());
+        // Some writers repeat the statement before every object.
+        if self.out.libraries.len() < MAX_LIBRARIES && !self.out.libraries.iter().any(|(_, known)| *known == names) {
+            self.out.libraries.push((line, names));
+        }
+    }
+
+    fn use_material(&mut self) -> Result<(), Fault> {
+        let line = self.text.line();
         let bytes = self.text.rest_of_line();
         let known = self.material_ids.len() as u32;
+        if known >= MAX_MATERIALS {
+            return Err(Fault::new(line, format!("more than {MAX_MATERIALS} materials")));
+        }
         let id = *self.material_ids.entry(bytes).or_insert(known);
         if id == known {
             self.out.materials.push(name(bytes));
         }
         self.pending().material = (!bytes.is_empty()).then_some(id);
+        Ok(())
     }
 
     fn group(&mut self) {

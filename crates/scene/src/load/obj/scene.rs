@@ -9,9 +9,9 @@ use photinus_geometry::{Affine3A, Vec3};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Files that never speak of smoothing are smooth across edges up to this angle (cosine of 30 degrees), so that a
+/// Files that never speak of smoothing are smooth across edges up to this angle (cosine of 40 degrees), so that a
 /// teapot is round and a box is not.
-const CREASE_COSINE: f32 = 0.866_025_4;
+const CREASE_COSINE: f32 = 0.766_044_4;
 
 /// Reads an OBJ file as a scene of its own, with its materials.
 ///

@@ -15,7 +15,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 /// Faces of a file without normals are smooth across edges up to this angle, degrees.
-const CREASE_DEGREES: f32 = 30.0;
+const CREASE_DEGREES: f32 = 40.0;
 
 /// Whether `head`, a file's first bytes, look like PLY.
 pub fn looks_like(head: &[u8]) -> bool {
