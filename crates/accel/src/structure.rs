@@ -1,5 +1,6 @@
 //! What every acceleration structure answers.
 
+use crate::structures::kd_tree::KdTree;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
 use photinus_profile::{IntersectCounters, TraversalCounters};
@@ -71,4 +72,9 @@ pub trait Structure: Send + Sync {
 
     /// What was built.
     fn summary(&self) -> StructureSummary;
+
+    /// The kd-tree, where this is one: its cells can be drawn and its leaves listed along a ray.
+    fn as_kd_tree(&self) -> Option<&KdTree> {
+        None
+    }
 }

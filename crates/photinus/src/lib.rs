@@ -14,6 +14,7 @@ mod query_clock;
 pub mod render;
 mod source;
 mod tree;
+mod tree_drawing;
 
 pub use built_in::{BuiltInScene, built_in_scenes, write_built_in};
 pub use compare::{Comparison, compare};
@@ -27,3 +28,4 @@ pub use photinus_photons as photons;
 pub use photinus_scene::{LoadOptions, Scene};
 pub use source::open;
 pub use tree::{Tree, TreeOptions, TreeReport, build_tree};
+pub use tree_drawing::{Ink, Line, TreeDrawing, TreeView, draw_kd_tree};

@@ -250,6 +250,10 @@ impl Structure for KdTree {
         }
     }
 
+    fn as_kd_tree(&self) -> Option<&KdTree> {
+        Some(self)
+    }
+
     /// The cost is that of the heuristic, in triangle tests: nodes count for the ratio of the costs.
     fn summary(&self) -> StructureSummary {
         let mut out = StructureSummary {
