@@ -129,6 +129,9 @@ fn bench(wanted: &Wanted, member: &SearchMember, photons: &[Photon], radius: f32
     });
     let search = member.build(photons.to_vec(), &options).expect("built");
     println!("  {:34} {:9.1} bytes a photon", "memory", search.summary().bytes as f64 / photons.len() as f64);
+    if ["build", "copy"].contains(&wanted.only.as_str()) {
+        return;
+    }
     for in_order in [true, false] {
         let queries = queries(count, radius, in_order);
         searches(wanted, &*search, &queries, if in_order { "in order" } else { "shuffled" });

@@ -6,11 +6,11 @@ use photinus_geometry::Vec3;
 /// Why a photon was refused, or a search not built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PhotonError {
-    /// The position has a component that is NaN or infinite.
-    #[error("photon position {0} is not finite")]
+    /// The position has a component that is NaN or beyond 1e18.
+    #[error("photon position {0} is not within 1e18 of the origin")]
     Position(Vec3),
     /// The flux has a channel that is NaN, negative or above the largest that can be stored.
-    #[error("photon flux {0} W is not in 0..1.3e19 in every channel")]
+    #[error("photon flux {0} W is not in 0..1.6e15 in every channel")]
     Flux(Vec3),
     /// The direction is zero, NaN or infinite.
     #[error("photon direction {0} is no direction")]

@@ -3,57 +3,71 @@
 //! | bits | what |
 //! |---|---|
 //! | 0..8, 8..16, 16..24 | red, green, blue mantissa |
-//! | 24..32 | scale code c: the scale is 2^(c/2 - 72) for even c, 1.5 * 2^((c-1)/2 - 72) for odd c |
+//! | 24..32 | scale code c, 2..=255: the scale is 2^(c/2 - 85) for even c, 1.5 * 2^((c-1)/2 - 85) for odd c; 0: black |
 //!
-//! A channel is mantissa * scale. Half steps of the exponent keep the largest mantissa above 170, so that the quantum
-//! is below 1/170 of the largest channel. Mantissas are rounded up or down at random with the probabilities that make
-//! the mean exact: a map holds thousands of photons of equal flux, and rounding them all alike would tint the picture.
+//! A channel is mantissa * scale. Half steps of the exponent keep the largest mantissa at 170 or above, so that the
+//! quantum is at most 1/170 of the largest channel. Mantissas are rounded up or down at random with the probabilities
+//! that make the mean exact: a map holds thousands of photons of equal flux, and rounding them all alike would tint
+//! the picture.
 
 use photinus_geometry::Vec3;
 
-/// Exponent field of the scale of code 0.
-pub(crate) const SCALE_BIAS: u32 = 127 - 72;
+/// The scale's code, shifted right by two, is in the place of the upper exponent bits and the first mantissa bit of an
+/// f32 ...
+pub(crate) const RAW_SCALE_MASK: u32 = 0x3FC0_0000;
+/// ... which is then the scale but for this factor.
+const RAW_UNIT: f32 = (1u64 << 42) as f32;
+/// The least code that is no denormal number.
+const LEAST_CODE: u32 = 2;
 
-/// Largest flux of a channel that can be stored, W: 255 * 1.5 * 2^55.
-pub(crate) const MAX_FLUX: f32 = 255.0 * 1.5 * (1u64 << 55) as f32;
+/// Masks of the mantissas in a word.
+pub(crate) const MANTISSA_MASKS: [u32; 3] = [0xFF, 0xFF00, 0x00FF_0000];
 
-/// The scale of a word, W.
+/// What takes a mantissa in its place in the word, times the raw scale, to W: powers of two, so that sums of such
+/// products may be multiplied once.
+pub(crate) const PLACED_UNITS: Vec3 = Vec3::new(RAW_UNIT, RAW_UNIT / 256.0, RAW_UNIT / 65536.0);
+
+/// Largest flux of a channel that can be stored, W.
+pub(crate) const MAX_FLUX: f32 = 255.0 * 1.5 * RAW_UNIT;
+
+/// The scale of a word but for the factor in [`PLACED_UNITS`].
 #[inline]
-pub(crate) fn scale(word: u32) -> f32 {
-    f32::from_bits(((word >> 24) << 22) + (SCALE_BIAS << 23))
+pub(crate) fn raw_scale(word: u32) -> f32 {
+    f32::from_bits((word >> 2) & RAW_SCALE_MASK)
 }
 
-/// The three mantissas of a word, 0..=255.
+/// The three mantissas of a word in their places.
 #[inline]
-pub(crate) fn mantissas(word: u32) -> [f32; 3] {
-    [word & 255, (word >> 8) & 255, (word >> 16) & 255].map(|m| m as f32)
+pub(crate) fn placed_mantissas(word: u32) -> Vec3 {
+    Vec3::from_array(MANTISSA_MASKS.map(|mask| (word & mask) as f32))
 }
 
 /// The flux of a word, W; exact.
 #[inline]
 pub(crate) fn unpack(word: u32) -> Vec3 {
-    Vec3::from_array(mantissas(word)) * scale(word)
+    placed_mantissas(word) * raw_scale(word) * PLACED_UNITS
 }
 
 /// Packs a flux whose channels lie in `0..=MAX_FLUX`. `dither` holds a random word a channel.
 #[inline]
 pub(crate) fn pack(flux: Vec3, dither: [u32; 3]) -> u32 {
     let largest = f64::from(flux.max_element());
-    // The least code whose 255 quanta hold the largest channel: f32 bits above the bias, in half octaves, rounded up.
-    let bits = ((largest * (1.0 / 255.0)) as f32).to_bits();
-    let mut code = bits.saturating_sub(SCALE_BIAS << 23).div_ceil(1 << 22);
-    if 255.0 * f64::from(scale(code << 24)) < largest {
+    if largest == 0.0 {
+        return 0;
+    }
+    // The least code whose 255 quanta hold the largest channel: bits of an f32 in half octaves, rounded up.
+    let scale = |code: u32| f64::from(raw_scale(code << 24)) * f64::from(RAW_UNIT);
+    let bits = ((largest * (1.0 / 255.0 / f64::from(RAW_UNIT))) as f32).to_bits();
+    let mut code = bits.div_ceil(1 << 22).max(LEAST_CODE);
+    if 255.0 * scale(code) < largest {
         code += 1;
     }
-    let inv = 1.0 / f64::from(scale(code << 24));
+    let inv = 1.0 / scale(code);
     let mantissa = |value: f32, dither: u32| {
         let dither = f64::from(dither) * (1.0 / 4_294_967_296.0);
         ((f64::from(value) * inv + dither) as u32).min(255)
     };
-    mantissa(flux.x, dither[0])
-        | mantissa(flux.y, dither[1]) << 8
-        | mantissa(flux.z, dither[2]) << 16
-        | if largest > 0.0 { code << 24 } else { 0 }
+    mantissa(flux.x, dither[0]) | mantissa(flux.y, dither[1]) << 8 | mantissa(flux.z, dither[2]) << 16 | code << 24
 }
 
 /// Three words that look random and depend on nothing but `words`: the dither of a photon.
@@ -90,13 +104,13 @@ mod tests {
             let error = (unpack(pack(flux, d)) - flux).abs().max_element() / flux.max_element();
             worst = worst.max(error);
         }
-        println!("seed 17, 29: worst error {worst:e} of the largest channel");
-        assert!(worst < 1.0 / 170.0, "{worst}");
+        assert!(worst <= 1.0 / 170.0, "seeds 17, 29: {worst} of the largest channel");
+        assert!(worst > 1.0 / 200.0, "the bound is reached, or the test saw little: {worst}");
     }
 
     #[test]
     fn what_the_format_holds_is_kept_exactly() {
-        for word in [0u32, 0x8001_02FF, 0x80FF_FFFF, 0x7FFF_00AB, 0xFFFF_FFFF, 0x00FF_0001] {
+        for word in [0u32, 0x8001_02FF, 0x80FF_FFFF, 0x7FFF_00AB, 0xFFFF_FFFF, 0x02FF_0001, 0x0200_0001] {
             for d in [0, 1 << 31, u32::MAX] {
                 assert_eq!(pack(unpack(word), [d; 3]), word, "{word:x}");
             }

@@ -3,14 +3,14 @@
 
 use crate::kernel::PreparedKernel;
 use crate::octahedral::decode_scaled;
-use crate::photon::{DEPTH_MASK, DEPTH_SHIFT, NORMAL_MAX, normal_code};
+use crate::photon::{LOW_MASK, NORMAL_MAX, is_searchable, low_limit, normal_code};
 use crate::{GatherQuery, Kernel};
 use photinus_geometry::Vec3;
 
 /// Squared radius of a search; negative, so that nothing is found, where the question makes no sense.
 #[inline]
 pub(crate) fn radius_sq(position: Vec3, radius: f32) -> f32 {
-    if radius >= 0.0 && position.is_finite() { radius * radius } else { -1.0 }
+    if radius >= 0.0 && is_searchable(position) { radius * radius } else { -1.0 }
 }
 
 /// Squared distance.
@@ -26,8 +26,8 @@ pub(crate) struct PreparedQuery {
     pub(crate) position: Vec3,
     pub(crate) r2: f32,
     pub(crate) normal: Vec3,
-    /// The largest depth found, in place in a surface word.
-    pub(crate) max_depth: u32,
+    /// The largest low byte of a surface word found: see [`low_limit`].
+    pub(crate) low_limit: u32,
     pub(crate) kernel: PreparedKernel,
 }
 
@@ -38,7 +38,7 @@ impl PreparedQuery {
             position: query.position,
             r2: radius_sq(query.position, query.radius),
             normal: query.normal,
-            max_depth: query.max_depth.min(127) << DEPTH_SHIFT,
+            low_limit: low_limit(query.max_depth),
             kernel: PreparedKernel::new(kernel, query.radius),
         }
     }
@@ -46,7 +46,7 @@ impl PreparedQuery {
     /// Whether a photon with this surface word passes the tests of normal and depth.
     #[inline]
     pub(crate) fn accepts(&self, surface: u32) -> bool {
-        surface & DEPTH_MASK <= self.max_depth && self.normal_within_60(surface)
+        surface & LOW_MASK <= self.low_limit && self.normal_within_60(surface)
     }
 
     /// cos 60 = 1/2: with v the stored normal of any length, v . n >= |v| / 2, squared to save the root.

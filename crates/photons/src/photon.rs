@@ -7,14 +7,13 @@ use photinus_geometry::Vec3;
 const DIRECTION_MAX: i32 = 32767;
 /// Largest component of an encoded normal.
 pub(crate) const NORMAL_MAX: i32 = 2047;
-/// The bits of [`Photon::surface_word`] that hold the normal.
-pub(crate) const NORMAL_MASK: u32 = 0x00FF_FFFF;
-/// The bits of [`Photon::surface_word`] that hold the depth.
-pub(crate) const DEPTH_MASK: u32 = 0x7F00_0000;
-/// Shift of the depth in [`Photon::surface_word`].
-pub(crate) const DEPTH_SHIFT: u32 = 24;
-/// The bit of [`Photon::surface_word`] that marks a caustic photon.
-const CAUSTIC_BIT: u32 = 1 << 31;
+/// The bits of a surface word that hold the normal: twelve a component, x highest.
+pub(crate) const NORMAL_MASK: u32 = 0xFFFF_FF00;
+/// The bits of a surface word below the normal: the depth, seven bits, above the caustic flag. The least word with a
+/// normal and the word's own low byte thus compare as depths do.
+pub(crate) const LOW_MASK: u32 = 0x0000_00FF;
+/// Largest depth stored.
+const MAX_DEPTH: u32 = 127;
 
 /// A stored photon.
 ///
@@ -25,9 +24,11 @@ const CAUSTIC_BIT: u32 = 1 << 31;
 /// | 4 | direction back to where the photon came from, octahedral, 16 + 16 bits |
 /// | 4 | surface normal, octahedral, 12 + 12 bits; depth, 7 bits; caustic flag, 1 bit |
 ///
+/// Positions lie within 1e18 of the origin along each axis, so that no squared distance overflows.
+///
 /// Errors: each channel of the flux is within 1/170 of the largest channel (1/350 of it on the mean) and exact in the
-/// mean over photons; channels of 1e-19 W to 1.3e19 W keep that precision, smaller ones are rounded to multiples of
-/// 2^-72 W. The direction is within 7e-5 rad, the normal within 1.1e-3 rad; both are exact along the axes.
+/// mean over photons; that holds for largest channels of 1e-23 W to 1.6e15 W, smaller ones are rounded to multiples of
+/// 2^-84 W. The direction is within 7e-5 rad, the normal within 1.1e-3 rad; both are exact along the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Photon {
@@ -39,15 +40,21 @@ pub struct Photon {
 
 const _: () = assert!(size_of::<Photon>() == 24);
 
+/// Whether a point may be searched from or held: not NaN and not farther out than [`Photon`] says.
+#[inline]
+pub(crate) fn is_searchable(position: Vec3) -> bool {
+    position.abs().cmple(Vec3::splat(1e18)).all()
+}
+
 impl Photon {
     /// Packs a photon.
     ///
-    /// `position` in scene units; `flux` in W, each channel in `0..1.3e19`; `direction` points back to where the
+    /// `position` in scene units; `flux` in W, each channel in `0..1.6e15`; `direction` points back to where the
     /// photon came from and `normal` is that of the surface, both of any length; `depth` counts the path's surface
     /// hits up to this one, 1 for a photon straight from its light, and is stored as 1..=127 (more becomes 127).
     ///
     /// # Errors
-    /// A position that is not finite, a flux out of range, a direction or normal that is zero or not finite.
+    /// A position beyond 1e18 or NaN, a flux out of range, a direction or normal that is zero or not finite.
     #[inline]
     pub fn new(
         position: Vec3,
@@ -58,7 +65,7 @@ impl Photon {
         caustic: bool,
     ) -> Result<Self, PhotonError> {
         let is_direction = |v: Vec3| v.is_finite() && v != Vec3::ZERO;
-        if !position.is_finite() {
+        if !is_searchable(position) {
             return Err(PhotonError::Position(position));
         }
         if !(flux.cmpge(Vec3::ZERO).all() && flux.cmple(Vec3::splat(flux::MAX_FLUX)).all()) {
@@ -73,10 +80,8 @@ impl Photon {
         let [dx, dy] = octahedral::encode(direction, DIRECTION_MAX);
         let direction = (dx as u32 & 0xFFFF) | (dy as u32) << 16;
         let [nx, ny] = octahedral::encode(normal, NORMAL_MAX);
-        let surface = (nx as u32 & 0xFFF)
-            | (ny as u32 & 0xFFF) << 12
-            | depth.clamp(1, 127) << DEPTH_SHIFT
-            | if caustic { CAUSTIC_BIT } else { 0 };
+        let surface =
+            (nx as u32) << 20 | (ny as u32 & 0xFFF) << 8 | depth.clamp(1, MAX_DEPTH) << 1 | u32::from(caustic);
         let [x, y, z] = position.to_array().map(f32::to_bits);
         let [r, g, b] = flux.to_array().map(f32::to_bits);
         let flux = flux::pack(flux, flux::dither([x, y, z, r, g, b, direction]));
@@ -86,11 +91,11 @@ impl Photon {
     /// A photon from its six words as [`Photon::to_words`] gives them.
     ///
     /// # Errors
-    /// A position that is not finite; every value of the other words is a photon.
+    /// A position beyond 1e18 or NaN; every value of the other words is a photon.
     pub fn from_words(words: [u32; 6]) -> Result<Self, PhotonError> {
         let [x, y, z, flux, direction, surface] = words;
         let position = Vec3::new(f32::from_bits(x), f32::from_bits(y), f32::from_bits(z));
-        if position.is_finite() {
+        if is_searchable(position) {
             Ok(Self { position, flux, direction, surface })
         } else {
             Err(PhotonError::Position(position))
@@ -136,18 +141,13 @@ impl Photon {
     /// Surface hits of the photon's path up to this one, 1..=127; 127 stands for more, too.
     #[inline]
     pub fn depth(&self) -> u32 {
-        (self.surface & DEPTH_MASK) >> DEPTH_SHIFT
+        (self.surface & LOW_MASK) >> 1
     }
 
     /// Whether the photon came from its light through specular surfaces only, by the caller's own definition.
     #[inline]
     pub fn is_caustic(&self) -> bool {
-        self.surface & CAUSTIC_BIT != 0
-    }
-
-    #[inline]
-    pub(crate) fn flux_word(&self) -> u32 {
-        self.flux
+        self.surface & 1 != 0
     }
 
     #[inline]
@@ -156,10 +156,16 @@ impl Photon {
     }
 }
 
+/// The largest low byte of surface words of at most this depth.
+#[inline]
+pub(crate) fn low_limit(max_depth: u32) -> u32 {
+    max_depth.min(MAX_DEPTH) << 1 | 1
+}
+
 /// The octahedral integers of a surface word's normal.
 #[inline]
 pub(crate) fn normal_code(surface: u32) -> [i32; 2] {
-    [(surface << 20) as i32 >> 20, (surface << 8) as i32 >> 20]
+    [surface as i32 >> 20, (surface << 12) as i32 >> 20]
 }
 
 #[cfg(test)]
@@ -191,13 +197,14 @@ mod tests {
     fn what_is_no_photon_is_refused() {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let v = Vec3::new(0.0, bad, 0.0);
+            assert!(photon(Vec3::new(0.0, 0.0, 1.01e18), Vec3::ONE).is_err());
             assert!(matches!(photon(v, Vec3::ONE), Err(PhotonError::Position(_))));
             assert!(matches!(photon(Vec3::ZERO, v), Err(PhotonError::Flux(_))));
             assert!(matches!(Photon::new(Vec3::ZERO, Vec3::ONE, v, Vec3::Z, 1, false), Err(PhotonError::Direction(_))));
             assert!(matches!(Photon::new(Vec3::ZERO, Vec3::ONE, Vec3::Z, v, 1, false), Err(PhotonError::Normal(_))));
         }
         assert!(matches!(photon(Vec3::ZERO, Vec3::new(1.0, -1e-30, 1.0)), Err(PhotonError::Flux(_))));
-        assert!(matches!(photon(Vec3::ZERO, Vec3::new(1.0, 1.4e19, 1.0)), Err(PhotonError::Flux(_))));
+        assert!(matches!(photon(Vec3::ZERO, Vec3::new(1.0, 1.7e15, 1.0)), Err(PhotonError::Flux(_))));
         let zero = Photon::new(Vec3::ZERO, Vec3::ONE, Vec3::ZERO, Vec3::Z, 1, false);
         assert!(matches!(zero, Err(PhotonError::Direction(_))));
         assert!(Photon::from_words([f32::NAN.to_bits(), 0, 0, 0, 0, 0]).is_err());

@@ -45,14 +45,16 @@ pub struct SearchSummary {
     pub photons: u64,
     /// Memory, photons included.
     pub bytes: u64,
+    /// Vector kernels in use (`avx512`, `avx2`, `scalar`); empty where the member has none.
+    pub kernels: &'static str,
 }
 
 /// A photon search structure. Photon ids are indices into the vector that it was built over, whatever order the
 /// member keeps its photons in; [`Search::photon`] reads them back.
 ///
 /// All members find the same photons: those with `distance_sq <= radius * radius`, where `distance_sq` is
-/// `(dx * dx + dy * dy) + dz * dz` in f32. A query with a position that is not finite or a radius that is negative or
-/// NaN finds nothing; radius 0 finds what lies at the very position, an infinite radius everything.
+/// `(dx * dx + dy * dy) + dz * dz` in f32. A query with a position beyond 1e18 or NaN, or a radius that is negative or
+/// NaN, finds nothing; radius 0 finds what lies at the very position, an infinite radius everything.
 pub trait Search: Send + Sync {
     /// Sums kernel-weighted flux for each query; `out` is as long as `queries`. A photon counts where it lies within
     /// the radius, its normal is within 60 degrees of the query's and its depth is at most the query's.

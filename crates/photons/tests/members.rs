@@ -1,21 +1,28 @@
-//! Every member against `brute-force`, over photons and queries of every kind.
+//! Every member against `brute-force`, over photons and queries of every kind; and `brute-force` against answers known
+//! by hand.
 
 mod support;
 
-use photinus_photons::{BuildOptions, Gathered, Kernel, Neighbor, SEARCHES, Search, build};
+use photinus_geometry::Vec3;
+use photinus_photons::{
+    BuildOptions, GatherQuery, Gathered, Kernel, Neighbor, Photon, SEARCHES, Search, build, kd_balanced,
+};
 use photinus_profile::SearchCounters;
 use support::{SEED, Set, queries, sets};
 
 const KERNELS: [Kernel; 4] = [Kernel::Constant, Kernel::Cone { k: 1.1 }, Kernel::Epanechnikov, Kernel::Gaussian];
 
-/// Calls `check` with every member, built with the hint that suits and without one, beside the oracle.
-fn for_each_member(set: &Set, mut check: impl FnMut(&str, &dyn Search, &dyn Search)) {
-    println!("seed {SEED}, set '{}'", set.name);
-    let oracle = build("brute-force", set.photons.clone(), &BuildOptions::default()).unwrap();
-    for member in SEARCHES {
+fn oracle(set: &Set) -> Box<dyn Search> {
+    build("brute-force", set.photons.clone(), &BuildOptions::default()).unwrap()
+}
+
+/// Calls `check` with every member but the oracle, built with the hint that suits, without one and with a poor one.
+fn for_each_member(set: &Set, mut check: impl FnMut(&str, &dyn Search)) {
+    for member in SEARCHES.iter().filter(|m| m.name != "brute-force") {
         for radius_hint in [set.radius, 0.0, set.radius * 30.0] {
             let search = member.build(set.photons.clone(), &BuildOptions { radius_hint }).unwrap();
-            check(&format!("{} on '{}' with hint {radius_hint:?}", member.name, set.name), &*search, &*oracle);
+            let context = format!("seed {SEED}: {} on '{}' with hint {radius_hint:e}", member.name, set.name);
+            check(&context, &*search);
         }
     }
 }
@@ -23,12 +30,15 @@ fn for_each_member(set: &Set, mut check: impl FnMut(&str, &dyn Search, &dyn Sear
 #[test]
 fn gather_agrees_with_the_oracle() {
     for set in sets() {
-        let queries = queries(&set, 96);
-        for_each_member(&set, |context, search, oracle| {
-            for kernel in KERNELS {
-                let mut expected = vec![Gathered::default(); queries.len()];
+        let (queries, oracle) = (queries(&set, 80), oracle(&set));
+        let expected = KERNELS.map(|kernel| {
+            let mut expected = vec![Gathered::default(); queries.len()];
+            oracle.gather(&queries, kernel, &mut expected);
+            expected
+        });
+        for_each_member(&set, |context, search| {
+            for (kernel, expected) in KERNELS.into_iter().zip(&expected) {
                 let mut found = vec![Gathered { count: 9, ..Default::default() }; queries.len()];
-                oracle.gather(&queries, kernel, &mut expected);
                 search.gather(&queries, kernel, &mut found);
                 for (i, (e, f)) in expected.iter().zip(&found).enumerate() {
                     assert_eq!(e.count, f.count, "{context}: query {i} {:?}", queries[i]);
@@ -50,21 +60,22 @@ fn gather_agrees_with_the_oracle() {
 
 #[test]
 fn visit_hands_out_what_gather_sums() {
+    let list = |search: &dyn Search, query: &GatherQuery| {
+        let mut list = Vec::new();
+        search.visit(query, &mut |photon, d2| list.push((photon.to_words(), d2.to_bits())));
+        list
+    };
     for set in sets() {
-        let queries = queries(&set, 64);
-        for_each_member(&set, |context, search, oracle| {
-            for query in &queries {
-                let list = |s: &dyn Search| {
-                    let mut list = Vec::new();
-                    s.visit(query, &mut |photon, d2| list.push((photon.to_words(), d2.to_bits())));
-                    let first = list.clone();
-                    list.clear();
-                    s.visit(query, &mut |photon, d2| list.push((photon.to_words(), d2.to_bits())));
-                    assert_eq!(list, first, "{context}: order");
-                    list.sort_unstable();
-                    list
-                };
-                assert_eq!(list(search), list(oracle), "{context}: {query:?}");
+        let (queries, oracle) = (queries(&set, 40), oracle(&set));
+        let expected: Vec<_> = queries.iter().map(|query| list(&*oracle, query)).collect();
+        for_each_member(&set, |context, search| {
+            for (query, expected) in queries.iter().zip(&expected) {
+                let mut found = list(search, query);
+                assert_eq!(found, list(search, query), "{context}: the order changed, {query:?}");
+                let mut expected = expected.clone();
+                found.sort_unstable();
+                expected.sort_unstable();
+                assert_eq!(found, expected, "{context}: {query:?}");
             }
         });
     }
@@ -73,25 +84,78 @@ fn visit_hands_out_what_gather_sums() {
 #[test]
 fn neighbors_agree_with_the_oracle_bit_for_bit() {
     for set in sets() {
-        let queries = queries(&set, 64);
-        for_each_member(&set, |context, search, oracle| {
-            let (mut expected, mut found) = (Vec::new(), vec![Neighbor { distance_sq: 1.0, photon: 1 }]);
-            for query in &queries {
-                oracle.within_radius(query.position, query.radius, &mut expected);
+        let (queries, oracle) = (queries(&set, 24), oracle(&set));
+        let radii = |query: &GatherQuery| [query.radius, query.radius * 7.0, f32::INFINITY];
+        let of_query = |query: &GatherQuery| {
+            let mut within = Vec::new();
+            oracle.within_radius(query.position, query.radius, &mut within);
+            let by_distance = radii(query).map(|radius| {
+                let mut found = Vec::new();
+                oracle.nearest(query.position, usize::MAX, radius, &mut found);
+                found
+            });
+            (within, by_distance)
+        };
+        let expected: Vec<_> = queries.iter().map(of_query).collect();
+        for_each_member(&set, |context, search| {
+            let mut found = vec![Neighbor { distance_sq: 1.0, photon: 1 }];
+            for (query, (within, by_distance)) in queries.iter().zip(&expected) {
                 search.within_radius(query.position, query.radius, &mut found);
-                assert_eq!(expected, found, "{context}: within, {query:?}");
+                assert_eq!(&found, within, "{context}: within, {query:?}");
                 for n in found.iter().take(20) {
                     assert_eq!(search.photon(n.photon), set.photons[n.photon as usize], "{context}");
                 }
-                for k in [0, 1, 2, 7, 50, 999, set.photons.len(), usize::MAX] {
-                    for radius in [query.radius, query.radius * 10.0, f32::INFINITY] {
-                        oracle.nearest(query.position, k, radius, &mut expected);
+                for (radius, by_distance) in radii(query).into_iter().zip(by_distance) {
+                    for k in [0, 1, 2, 50, 999, usize::MAX] {
                         search.nearest(query.position, k, radius, &mut found);
-                        assert_eq!(expected, found, "{context}: {k} nearest within {radius}, {query:?}");
+                        let expected = &by_distance[..k.min(by_distance.len())];
+                        assert_eq!(found, expected, "{context}: {k} nearest within {radius}, {query:?}");
                     }
                 }
             }
         });
+    }
+}
+
+/// Three photons on a line, one of them on a wall, whose answers need no program.
+#[test]
+fn every_member_knows_the_answers_of_three_photons() {
+    let photon = |x: f32, normal: Vec3, depth: u32| {
+        Photon::new(Vec3::new(x, 0.0, 0.0), Vec3::new(1.0, 0.5, 0.0), Vec3::Z, normal, depth, false).unwrap()
+    };
+    let photons = vec![photon(2.0, Vec3::Z, 1), photon(0.0, Vec3::Z, 3), photon(1.0, Vec3::X, 1)];
+    let neighbor = |distance_sq: f32, photon: u32| Neighbor { distance_sq, photon };
+    for member in SEARCHES {
+        let search = member.build(photons.clone(), &BuildOptions::default()).unwrap();
+        let gather = |radius: f32, normal: Vec3, max_depth: u32, kernel: Kernel| {
+            let query = GatherQuery { position: Vec3::ZERO, radius, normal, max_depth };
+            let mut out = [Gathered::default()];
+            search.gather(&[query], kernel, &mut out);
+            (out[0].count, out[0].flux)
+        };
+        let name = member.name;
+        let [far, near, wall] = [0, 1, 2].map(|i: usize| photons[i].flux());
+        assert_eq!(gather(2.0, Vec3::Z, 9, Kernel::Constant), (2, far + near), "{name}: the rim belongs to it");
+        assert_eq!(gather(1.999, Vec3::Z, 9, Kernel::Constant), (1, near), "{name}: beyond the rim");
+        assert_eq!(gather(2.0, Vec3::X, 9, Kernel::Constant), (1, wall), "{name}: normals");
+        assert_eq!(gather(2.0, Vec3::Z, 2, Kernel::Constant), (1, far), "{name}: depth");
+        assert_eq!(gather(2.0, -Vec3::Z, 9, Kernel::Constant), (0, Vec3::ZERO), "{name}: from behind");
+        assert_eq!(gather(0.0, Vec3::Z, 9, Kernel::Constant), (1, near), "{name}: radius 0");
+        let (count, sum) = gather(4.0, Vec3::Z, 9, Kernel::Epanechnikov);
+        assert_eq!(count, 2, "{name}");
+        assert!((sum - near - far * 0.75).length() < 1e-5, "{name}: {sum}");
+        let slanted = |degrees: f32| Vec3::new(libm::sinf(degrees.to_radians()), 0.0, libm::cosf(degrees.to_radians()));
+        assert_eq!(gather(0.5, slanted(59.9), 9, Kernel::Constant).0, 1, "{name}: 59.9 degrees");
+        assert_eq!(gather(0.5, slanted(60.1), 9, Kernel::Constant).0, 0, "{name}: 60.1 degrees");
+        let mut found = Vec::new();
+        search.nearest(Vec3::new(0.9, 0.0, 0.0), 2, 5.0, &mut found);
+        assert_eq!(found.iter().map(|n| n.photon).collect::<Vec<_>>(), [2, 1], "{name}");
+        search.nearest(Vec3::new(1.0, 0.0, 0.0), 3, 1.0, &mut found);
+        assert_eq!(found, [neighbor(0.0, 2), neighbor(1.0, 0), neighbor(1.0, 1)], "{name}: ties go by id");
+        search.within_radius(Vec3::ZERO, 1.0, &mut found);
+        assert_eq!(found, [neighbor(0.0, 1), neighbor(1.0, 2)], "{name}");
+        assert_eq!(search.photon(2), photons[2], "{name}");
+        assert_eq!(search.summary().photons, 3, "{name}");
     }
 }
 
@@ -104,6 +168,7 @@ fn names_are_unique_and_found() {
             assert_eq!(search.summary().name, member.name);
         }
     }
+    assert_eq!(kd_balanced(Vec::new()).unwrap().summary().name, "kd-balanced");
     let error = build("octree", Vec::new(), &BuildOptions::default()).err().unwrap().to_string();
     assert!(error.contains("octree") && error.contains("grid, "), "{error}");
 }

@@ -74,6 +74,7 @@ impl Search for BruteForce {
             name: "brute-force",
             photons: self.photons.len() as u64,
             bytes: (self.photons.capacity() * size_of::<Photon>()) as u64,
+            kernels: "",
         }
     }
 }

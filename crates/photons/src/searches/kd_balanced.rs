@@ -248,7 +248,7 @@ impl Search for KdBalanced {
         let bytes = self.nodes.capacity() * size_of::<Node>()
             + self.payloads.capacity() * size_of::<Payload>()
             + self.node_of.get().map_or(0, |n| n.capacity() * size_of::<u32>());
-        SearchSummary { name: "kd-balanced", photons: self.nodes.len() as u64, bytes: bytes as u64 }
+        SearchSummary { name: "kd-balanced", photons: self.nodes.len() as u64, bytes: bytes as u64, kernels: "" }
     }
 }
 

@@ -102,10 +102,8 @@ pub fn sets() -> Vec<Set> {
         set("tiny", 1e-22, photons(11, 1000, |s| (Vec3::new(s.next_1d(), s.next_1d(), 0.0) * 1e-21, Vec3::Z))),
         set(
             "huge",
-            1e36,
-            photons(12, 1000, |s| {
-                (Vec3::new(s.next_1d() - 0.5, s.next_1d() - 0.5, s.next_1d() - 0.5) * 2.0 * 3e38, Vec3::Z)
-            }),
+            1e17,
+            photons(12, 1000, |s| (Vec3::new(s.next_1d() - 0.5, s.next_1d() - 0.5, s.next_1d() - 0.5) * 2e18, Vec3::Z)),
         ),
         set("wide", 1e15, photons(13, 1000, |s| (Vec3::new(s.next_1d(), s.next_1d(), s.next_1d()) * 1e17, Vec3::Z))),
     ];
@@ -156,9 +154,11 @@ pub fn queries(set: &Set, count: usize) -> Vec<GatherQuery> {
         queries.push(GatherQuery { position: Vec3::new(0.0, bad, 0.0), ..base });
         queries.push(GatherQuery { position: Vec3::new(bad, 0.0, 0.0), radius: f32::INFINITY, ..base });
     }
+    queries.push(GatherQuery { position: Vec3::splat(1e18), radius: f32::INFINITY, ..base });
+    queries.push(GatherQuery { position: Vec3::splat(1.1e18), radius: f32::INFINITY, ..base });
     queries.push(GatherQuery { normal: Vec3::ZERO, ..base });
     queries.push(GatherQuery { normal: Vec3::NAN, ..base });
     queries.push(GatherQuery { max_depth: 0, ..base });
-    queries.push(GatherQuery { position: Vec3::splat(-3e38), radius: f32::MAX, ..base });
+    queries.push(GatherQuery { position: Vec3::splat(-1e18), radius: f32::MAX, ..base });
     queries
 }

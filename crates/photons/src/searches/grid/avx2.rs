@@ -7,10 +7,10 @@ use super::kernels::{
     CONE, CONSTANT, Candidates, EPANECHNIKOV, GAUSSIAN, NormalMemo, VectorKernels, kernel_index, key,
 };
 use crate::Gathered;
-use crate::flux::SCALE_BIAS;
+use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
 use crate::kernel::GAUSSIAN as GAUSSIAN_COEFFICIENTS;
-use crate::photon::{DEPTH_MASK, NORMAL_MASK, NORMAL_MAX};
+use crate::photon::{LOW_MASK, NORMAL_MAX};
 use photinus_geometry::Vec3;
 use std::arch::x86_64::*;
 use std::ops::Range;
@@ -20,12 +20,26 @@ const HALF: usize = 8;
 
 /// These kernels, where the processor has what they need.
 pub(crate) fn kernels() -> Option<VectorKernels> {
-    is_x86_feature_detected!("avx2").then_some(VectorKernels { name: "avx2", cull, gather, scan })
+    is_x86_feature_detected!("avx2").then_some(VectorKernels { name: "avx2", cull, prefetch, gather, scan })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
     // SAFETY: `kernels` hands this function out only where the processor has AVX2.
     unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
+}
+
+fn prefetch(blocks: &[Block], hits: &[u32]) {
+    for block in hits {
+        let block = &blocks[*block as usize];
+        for line in [block.x.as_ptr(), block.y.as_ptr(), block.z.as_ptr()] {
+            // SAFETY: a prefetch reads nothing that the program sees, and every processor of this family has it.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(line.cast()) };
+        }
+        for line in [block.flux.as_ptr(), block.surface.as_ptr()] {
+            // SAFETY: as above.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(line.cast()) };
+        }
+    }
 }
 
 fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut NormalMemo) -> Gathered {
@@ -93,8 +107,8 @@ fn distances_sq(block: &Block, half: usize, position: [__m256; 3]) -> __m256 {
 fn normals_within_60(surface: __m256i, normal: [__m256; 3]) -> __m256 {
     let zero = _mm256_setzero_ps();
     let sign_bit = _mm256_set1_ps(-0.0);
-    let x = _mm256_cvtepi32_ps(_mm256_srai_epi32::<20>(_mm256_slli_epi32::<20>(surface)));
-    let y = _mm256_cvtepi32_ps(_mm256_srai_epi32::<20>(_mm256_slli_epi32::<8>(surface)));
+    let x = _mm256_cvtepi32_ps(_mm256_srai_epi32::<20>(surface));
+    let y = _mm256_cvtepi32_ps(_mm256_srai_epi32::<20>(_mm256_slli_epi32::<12>(surface)));
     let abs = |v: __m256| _mm256_andnot_ps(sign_bit, v);
     let z = _mm256_sub_ps(_mm256_sub_ps(_mm256_set1_ps(NORMAL_MAX as f32), abs(x)), abs(y));
     let fold = abs(_mm256_max_ps(_mm256_sub_ps(zero, z), zero));
@@ -110,8 +124,7 @@ fn normals_within_60(surface: __m256i, normal: [__m256; 3]) -> __m256 {
 #[target_feature(enable = "avx2")]
 fn weights<const KERNEL: u8>(d2: __m256, inv_r2: __m256, inv_k: __m256) -> __m256 {
     let one = _mm256_set1_ps(1.0);
-    // The second operand where the first is NaN.
-    let u = _mm256_min_ps(_mm256_mul_ps(d2, inv_r2), one);
+    let u = _mm256_mul_ps(d2, inv_r2);
     match KERNEL {
         CONSTANT => one,
         CONE => _mm256_sub_ps(one, _mm256_mul_ps(_mm256_sqrt_ps(u), inv_k)),
@@ -176,8 +189,8 @@ fn gather_kernel<const KERNEL: u8>(
     let r2 = _mm256_set1_ps(query.r2);
     let inv_r2 = _mm256_set1_ps(query.kernel.inv_r2);
     let inv_k = _mm256_set1_ps(query.kernel.inv_k);
-    let max_depth = _mm256_set1_epi32(query.max_depth as i32);
-    let byte = _mm256_set1_epi32(255);
+    let low_limit = _mm256_set1_epi32(query.low_limit as i32);
+    let mantissa_masks = MANTISSA_MASKS.map(|mask| _mm256_set1_epi32(mask as i32));
     let mut sums = [[_mm256_setzero_ps(); 2]; 3];
     let mut count = 0;
     for block in hits {
@@ -189,31 +202,24 @@ fn gather_kernel<const KERNEL: u8>(
                 continue;
             }
             let surface = words(&block.surface, half);
-            let depth = _mm256_and_si256(surface, _mm256_set1_epi32(DEPTH_MASK as i32));
-            let too_deep = _mm256_castsi256_ps(_mm256_cmpgt_epi32(depth, max_depth));
+            let low = _mm256_and_si256(surface, _mm256_set1_epi32(LOW_MASK as i32));
+            let too_deep = _mm256_castsi256_ps(_mm256_cmpgt_epi32(low, low_limit));
             let mut hit = _mm256_andnot_ps(too_deep, near);
-            let code = _mm256_and_si256(surface, _mm256_set1_epi32(NORMAL_MASK as i32));
-            let known = _mm256_cmpeq_epi32(code, _mm256_set1_epi32(memo.word as i32));
-            let other = _mm256_movemask_ps(_mm256_andnot_ps(_mm256_castsi256_ps(known), hit));
-            if other != 0 || !memo.passes {
+            let normals = _mm256_sub_epi32(surface, low);
+            let known = _mm256_castsi256_ps(_mm256_cmpeq_epi32(normals, _mm256_set1_epi32(memo.word as i32)));
+            let others = _mm256_movemask_ps(_mm256_andnot_ps(known, hit));
+            if others != 0 || !memo.passes {
                 hit = _mm256_and_ps(hit, normals_within_60(surface, normal));
-                let pass = _mm256_movemask_ps(hit) & other;
-                if pass != 0 {
-                    memo.learn(block.surface[half * HALF + pass.trailing_zeros() as usize]);
+                let learnt = _mm256_movemask_ps(hit) & others;
+                if learnt != 0 {
+                    memo.learn(block.surface[half * HALF + learnt.trailing_zeros() as usize]);
                 }
             }
             let flux = words(&block.flux, half);
-            let scale = _mm256_add_epi32(
-                _mm256_slli_epi32::<22>(_mm256_srli_epi32::<24>(flux)),
-                _mm256_set1_epi32((SCALE_BIAS << 23) as i32),
-            );
+            let scale = _mm256_and_si256(_mm256_srli_epi32::<2>(flux), _mm256_set1_epi32(RAW_SCALE_MASK as i32));
             let weight = _mm256_mul_ps(_mm256_castsi256_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
-            let mantissas = [
-                _mm256_and_si256(flux, byte),
-                _mm256_and_si256(_mm256_srli_epi32::<8>(flux), byte),
-                _mm256_and_si256(_mm256_srli_epi32::<16>(flux), byte),
-            ];
-            for (sum, mantissa) in sums.iter_mut().zip(mantissas) {
+            for (sum, mask) in sums.iter_mut().zip(mantissa_masks) {
+                let mantissa = _mm256_and_si256(flux, mask);
                 // Sums are never -0, so that adding +0 in the other lanes leaves them as they are.
                 let term = _mm256_and_ps(hit, _mm256_mul_ps(_mm256_cvtepi32_ps(mantissa), weight));
                 sum[half] = _mm256_add_ps(sum[half], term);
@@ -221,7 +227,7 @@ fn gather_kernel<const KERNEL: u8>(
             count += _mm256_movemask_ps(hit).count_ones();
         }
     }
-    Gathered { flux: Vec3::new(tree_sum(sums[0]), tree_sum(sums[1]), tree_sum(sums[2])), count }
+    Gathered { flux: Vec3::from_array(sums.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
 }
 
 #[target_feature(enable = "avx2,bmi1")]

@@ -5,22 +5,36 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::kernels::{CONE, CONSTANT, Candidates, EPANECHNIKOV, GAUSSIAN, NormalMemo, VectorKernels, kernel_index};
 use crate::Gathered;
-use crate::flux::SCALE_BIAS;
+use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
 use crate::kernel::GAUSSIAN as GAUSSIAN_COEFFICIENTS;
-use crate::photon::{DEPTH_MASK, NORMAL_MASK, NORMAL_MAX};
+use crate::photon::{LOW_MASK, NORMAL_MAX};
 use photinus_geometry::Vec3;
 use std::arch::x86_64::*;
 use std::ops::Range;
 
 /// These kernels, where the processor has what they need.
 pub(crate) fn kernels() -> Option<VectorKernels> {
-    is_x86_feature_detected!("avx512f").then_some(VectorKernels { name: "avx512", cull, gather, scan })
+    is_x86_feature_detected!("avx512f").then_some(VectorKernels { name: "avx512", cull, prefetch, gather, scan })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
     // SAFETY: `kernels` hands this function out only where the processor has AVX-512F.
     unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
+}
+
+fn prefetch(blocks: &[Block], hits: &[u32]) {
+    for block in hits {
+        let block = &blocks[*block as usize];
+        for line in [block.x.as_ptr(), block.y.as_ptr(), block.z.as_ptr()] {
+            // SAFETY: a prefetch reads nothing that the program sees, and every processor of this family has it.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(line.cast()) };
+        }
+        for line in [block.flux.as_ptr(), block.surface.as_ptr()] {
+            // SAFETY: as above.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(line.cast()) };
+        }
+    }
 }
 
 fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut NormalMemo) -> Gathered {
@@ -88,8 +102,8 @@ fn normals_within_60(surface: __m512i, normal: [__m512; 3]) -> __mmask16 {
     let sign_bit = _mm512_castsi512_ps(_mm512_set1_epi32(i32::MIN));
     let (sign_bits, x, y) = (
         _mm512_castps_si512(sign_bit),
-        _mm512_cvtepi32_ps(_mm512_srai_epi32::<20>(_mm512_slli_epi32::<20>(surface))),
-        _mm512_cvtepi32_ps(_mm512_srai_epi32::<20>(_mm512_slli_epi32::<8>(surface))),
+        _mm512_cvtepi32_ps(_mm512_srai_epi32::<20>(surface)),
+        _mm512_cvtepi32_ps(_mm512_srai_epi32::<20>(_mm512_slli_epi32::<12>(surface))),
     );
     let z = _mm512_sub_ps(_mm512_sub_ps(_mm512_set1_ps(NORMAL_MAX as f32), _mm512_abs_ps(x)), _mm512_abs_ps(y));
     let fold = _mm512_castps_si512(_mm512_max_ps(_mm512_sub_ps(zero, z), zero));
@@ -107,8 +121,7 @@ fn normals_within_60(surface: __m512i, normal: [__m512; 3]) -> __mmask16 {
 #[target_feature(enable = "avx512f")]
 fn weights<const KERNEL: u8>(d2: __m512, inv_r2: __m512, inv_k: __m512) -> __m512 {
     let one = _mm512_set1_ps(1.0);
-    // The second operand where the first is NaN.
-    let u = _mm512_min_ps(_mm512_mul_ps(d2, inv_r2), one);
+    let u = _mm512_mul_ps(d2, inv_r2);
     match KERNEL {
         CONSTANT => one,
         CONE => _mm512_sub_ps(one, _mm512_mul_ps(_mm512_sqrt_ps(u), inv_k)),
@@ -179,9 +192,12 @@ fn gather_kernel<const KERNEL: u8>(
     let r2 = _mm512_set1_ps(query.r2);
     let inv_r2 = _mm512_set1_ps(query.kernel.inv_r2);
     let inv_k = _mm512_set1_ps(query.kernel.inv_k);
-    let max_depth = _mm512_set1_epi32(query.max_depth as i32);
-    let byte = _mm512_set1_epi32(255);
+    let low_end = _mm512_set1_epi32(query.low_limit as i32 + 1);
+    let mantissa_masks = MANTISSA_MASKS.map(|mask| _mm512_set1_epi32(mask as i32));
     let mut known = _mm512_set1_epi32(memo.word as i32);
+    let mut known_end = if memo.passes { low_end } else { _mm512_setzero_si512() };
+    // Once a query, lest every block wait for the one before where all normals differ.
+    let mut learnt = false;
     let mut sums = [_mm512_setzero_ps(); 3];
     let mut count = 0;
     for block in hits {
@@ -189,36 +205,29 @@ fn gather_kernel<const KERNEL: u8>(
         let d2 = distances_sq(block, position);
         let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, r2);
         let surface = words(&block.surface);
-        let depth = _mm512_and_si512(surface, _mm512_set1_epi32(DEPTH_MASK as i32));
-        let mut hit = _mm512_mask_cmple_epu32_mask(near, depth, max_depth);
-        let difference = _mm512_xor_si512(surface, known);
-        let other = _mm512_mask_test_epi32_mask(hit, difference, _mm512_set1_epi32(NORMAL_MASK as i32))
-            | if memo.passes { 0 } else { hit };
-        if other != 0 {
-            let pass = normals_within_60(surface, normal) & other;
-            hit &= !other | pass;
-            if pass != 0 {
-                memo.learn(block.surface[pass.trailing_zeros() as usize]);
-                known = _mm512_set1_epi32(memo.word as i32);
+        // The known normal leaves only the low byte, which is small enough where the depth is.
+        let mut hit = _mm512_mask_cmplt_epu32_mask(near, _mm512_xor_si512(surface, known), known_end);
+        if hit != near {
+            let low = _mm512_and_si512(surface, _mm512_set1_epi32(LOW_MASK as i32));
+            let shallow = _mm512_mask_cmplt_epu32_mask(near & !hit, low, low_end);
+            let others = normals_within_60(surface, normal) & shallow;
+            if others != 0 && !learnt {
+                learnt = true;
+                memo.learn(block.surface[others.trailing_zeros() as usize]);
+                (known, known_end) = (_mm512_set1_epi32(memo.word as i32), low_end);
             }
+            hit |= others;
         }
         let flux = words(&block.flux);
-        let scale = _mm512_add_epi32(
-            _mm512_slli_epi32::<22>(_mm512_srli_epi32::<24>(flux)),
-            _mm512_set1_epi32((SCALE_BIAS << 23) as i32),
-        );
+        let scale = _mm512_and_si512(_mm512_srli_epi32::<2>(flux), _mm512_set1_epi32(RAW_SCALE_MASK as i32));
         let weight = _mm512_mul_ps(_mm512_castsi512_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
-        let mantissas = [
-            _mm512_and_si512(flux, byte),
-            _mm512_and_si512(_mm512_srli_epi32::<8>(flux), byte),
-            _mm512_and_si512(_mm512_srli_epi32::<16>(flux), byte),
-        ];
-        for (sum, mantissa) in sums.iter_mut().zip(mantissas) {
+        for (sum, mask) in sums.iter_mut().zip(mantissa_masks) {
+            let mantissa = _mm512_and_si512(flux, mask);
             *sum = _mm512_mask_add_ps(*sum, hit, *sum, _mm512_mul_ps(_mm512_cvtepi32_ps(mantissa), weight));
         }
         count += hit.count_ones();
     }
-    Gathered { flux: Vec3::new(tree_sum(sums[0]), tree_sum(sums[1]), tree_sum(sums[2])), count }
+    Gathered { flux: Vec3::from_array(sums.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
 }
 
 #[target_feature(enable = "avx512f,popcnt")]

@@ -1,7 +1,7 @@
 //! Photons sixteen at a time, field by field: the form that the vector kernels read; and the blocks' boxes.
 
 use crate::Photon;
-use photinus_geometry::Vec3;
+use photinus_geometry::{Aabb, Vec3};
 
 /// Photons in a block: the virtual lanes of every kernel.
 pub(crate) const LANES: usize = 16;
@@ -29,6 +29,29 @@ impl Block {
         surface: [0; LANES],
         direction: [0; LANES],
     };
+
+    /// A full block.
+    #[inline]
+    pub(crate) fn new(photons: &[Photon; LANES]) -> Self {
+        let mut block = Self::EMPTY;
+        for (lane, photon) in photons.iter().enumerate() {
+            block.set(lane, photon);
+        }
+        block
+    }
+
+    /// The least and the largest position: a block has at least one photon.
+    #[inline]
+    pub(crate) fn bounds(&self) -> Aabb {
+        let fold = |lanes: &[f32; LANES]| {
+            // Comparisons with the NaN of empty lanes are false.
+            let least = lanes.iter().fold(lanes[0], |least, v| if *v < least { *v } else { least });
+            let most = lanes.iter().fold(lanes[0], |most, v| if *v > most { *v } else { most });
+            (least, most)
+        };
+        let (x, y, z) = (fold(&self.x), fold(&self.y), fold(&self.z));
+        Aabb { min: Vec3::new(x.0, y.0, z.0), max: Vec3::new(x.1, y.1, z.1) }
+    }
 
     #[inline]
     pub(crate) fn set(&mut self, lane: usize, photon: &Photon) {
@@ -70,14 +93,10 @@ pub(crate) struct Boxes {
 }
 
 impl Boxes {
-    pub(crate) fn around(blocks: &[Block]) -> Self {
+    pub(crate) fn new(boxes: Vec<Aabb>) -> Self {
         let bounds = std::array::from_fn(|side| {
-            let of = |b: &Block| {
-                let lanes = [&b.x, &b.y, &b.z][side % 3].iter().copied();
-                // `f32::min` and `f32::max` pass over the NaN of empty lanes.
-                if side < 3 { lanes.fold(f32::INFINITY, f32::min) } else { lanes.fold(f32::NEG_INFINITY, f32::max) }
-            };
-            blocks.iter().map(of).chain([f32::NAN; LANES]).collect()
+            let of = |b: &Aabb| if side < 3 { b.min[side] } else { b.max[side - 3] };
+            boxes.iter().map(of).chain([f32::NAN; LANES]).collect()
         });
         Self { bounds }
     }

@@ -1,14 +1,16 @@
 //! The geometry of the grid: which cell holds a point, the order of the cells, and which cells a ball may touch.
 //!
 //! Cells are a little more than two gather radii wide, so that a ball meets two along each axis. Each is cut into
-//! 8 x 8 x 8 fine cells, whose Morton order (Morton 1966) is the order of the photons: neighbours in memory are
-//! neighbours in space.
+//! 8 x 8 x 8 fine cells. Photons are in the Morton order (Morton 1966) of their cells and, inside a cell, in the Hilbert
+//! order (Hilbert 1891) of the fine cells: neighbours in memory are neighbours in space.
 
 use photinus_geometry::{Aabb, Vec3};
 
 /// Fine cells along the edge of a cell, as a power of two.
 const FINE_LEVELS: u32 = 3;
 const FINE: f32 = (1u32 << FINE_LEVELS) as f32;
+/// Fine cells of a cell.
+const FINE_CELLS: usize = 1 << (3 * FINE_LEVELS);
 /// Edge of a cell in gather radii: two, and room for rounding.
 const EDGE_IN_RADII: f32 = 2.02;
 /// Bits of a fine cell along an axis: its place is exact to a quarter of a fine cell, and three fit a key.
@@ -42,22 +44,17 @@ pub(crate) struct Cells {
 pub(crate) type CellBox = [[u32; 2]; 3];
 
 impl Cells {
-    /// A grid for gather radii of `radius` (positive) over `bounds` (not empty), with larger cells where the box is
-    /// more than 2^21 fine cells long; `None` where the box is so large that distances overflow.
-    pub(crate) fn new(bounds: Aabb, radius: f32) -> Option<Self> {
+    /// A grid for gather radii of `radius` (positive) over the box of the photons, with larger cells where the box is
+    /// more than 2^21 fine cells long.
+    pub(crate) fn new(bounds: Aabb, radius: f32) -> Self {
+        let bounds = if bounds.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { bounds };
         let size = bounds.size();
-        if !(size.max_element() < 1e18) {
-            return None;
-        }
         let edge = f64::from(radius) * f64::from(EDGE_IN_RADII / FINE);
         let edge = edge.max(MIN_FINE_EDGE).max(f64::from(size.max_element()) / f64::from((1 << AXIS_BITS) - 2));
         let inv_edge = (1.0 / edge) as f32;
-        if !(inv_edge > 0.0) {
-            return None;
-        }
         let fine_count = (size * inv_edge).floor() + 1.0;
         let count = fine_count.to_array().map(|fine| ((fine as u32 - 1) >> FINE_LEVELS) + 1);
-        Some(Self { min: bounds.min, max: bounds.max, inv_edge, fine_count, count })
+        Self { min: bounds.min, max: bounds.max, inv_edge, fine_count, count }
     }
 
     /// Place of a point in units of fine cells; monotone along each axis.
@@ -66,27 +63,38 @@ impl Cells {
         (p - self.min) * self.inv_edge
     }
 
-    /// A bound on the Morton keys: they are below.
-    pub(crate) fn key_end(&self) -> u64 {
+    /// Bits of a key.
+    pub(crate) fn key_bits(&self) -> u32 {
         let bits = self.fine_count.to_array().map(|fine| 32 - (fine as u32 - 1).leading_zeros());
-        1 << (3 * bits.into_iter().max().unwrap_or(0))
+        // The order inside a cell needs all bits of its fine cells.
+        3 * bits.into_iter().max().unwrap_or(0).max(FINE_LEVELS)
     }
 
-    /// Morton key of the fine cell of a point inside the box.
+    /// Key of the fine cell of a point inside the box.
     #[inline]
     pub(crate) fn key(&self, p: Vec3) -> u64 {
         let [x, y, z] = self.place(p).to_array().map(|u| spread(u as u64));
+        let morton = x | y << 1 | z << 2;
+        let fine = morton & (FINE_CELLS as u64 - 1);
+        morton - fine + u64::from(HILBERT[fine as usize])
+    }
+
+    /// A key of 48 bits for the order of queries: the Morton key of the half cell, or of the nearest one.
+    #[inline]
+    pub(crate) fn order(&self, p: Vec3) -> u64 {
+        // Casts take NaN and what is below zero to zero.
+        let [x, y, z] = (self.place(p) * (2.0 / FINE)).to_array().map(|u| spread(u64::from(u as u16)));
         x | y << 1 | z << 2
     }
 
-    /// Index of the cell of a Morton key.
+    /// Index of the cell of a key.
     #[inline]
     pub(crate) fn cell_of_key(&self, key: u64) -> u64 {
         let key = key >> (3 * FINE_LEVELS);
         self.cell([compact(key), compact(key >> 1), compact(key >> 2)])
     }
 
-    /// Whether two Morton keys are of one cell.
+    /// Whether two keys are of one cell.
     #[inline]
     pub(crate) fn same_cell(a: u64, b: u64) -> bool {
         (a ^ b) >> (3 * FINE_LEVELS) == 0
@@ -102,7 +110,14 @@ impl Cells {
     /// radius around places of one half cell are given the same cells.
     #[inline]
     pub(crate) fn half_cell(place: Vec3) -> Vec3 {
-        (place * (2.0 / FINE)).floor() * (FINE / 2.0)
+        // Casts where `floor` would be a call for each component on the oldest processors. Beyond the range of i32 they
+        // stay at its ends, which are out of reach of any cell, too.
+        let half_cells = place * (2.0 / FINE);
+        let down = |u: f32| {
+            let toward_zero = u as i32 as f32;
+            if toward_zero > u { toward_zero - 1.0 } else { toward_zero }
+        };
+        Vec3::new(down(half_cells.x), down(half_cells.y), down(half_cells.z)) * (FINE / 2.0)
     }
 
     /// A radius in fine cells, with a margin for rounding.
@@ -152,6 +167,69 @@ pub(crate) enum Reached {
     Everything,
 }
 
+/// Place on the Hilbert curve through a cell, by the Morton index of the fine cell: the transform of Skilling,
+/// "Programming the Hilbert curve" (AIP Conference Proceedings 707, 2004).
+static HILBERT: [u16; FINE_CELLS] = hilbert_table();
+
+const fn hilbert_table() -> [u16; FINE_CELLS] {
+    let mut table = [0; FINE_CELLS];
+    let mut morton = 0;
+    while morton < FINE_CELLS {
+        table[morton] = hilbert_index(morton);
+        morton += 1;
+    }
+    table
+}
+
+const fn hilbert_index(morton: usize) -> u16 {
+    let mut x = [0usize; 3];
+    let mut bit = 0;
+    while bit < 3 * FINE_LEVELS {
+        x[bit as usize % 3] |= (morton >> bit & 1) << (bit / 3);
+        bit += 1;
+    }
+    // Undo the excess work of the lower levels, from the highest bit down.
+    let mut level = FINE_LEVELS - 1;
+    while level > 0 {
+        let below = (1 << level) - 1;
+        let mut axis = 0;
+        while axis < 3 {
+            if x[axis] >> level & 1 == 1 {
+                x[0] ^= below;
+            } else {
+                let swap = (x[0] ^ x[axis]) & below;
+                x[0] ^= swap;
+                x[axis] ^= swap;
+            }
+            axis += 1;
+        }
+        level -= 1;
+    }
+    // Gray encode.
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    let mut flip = 0;
+    level = FINE_LEVELS - 1;
+    while level > 0 {
+        if x[2] >> level & 1 == 1 {
+            flip ^= (1 << level) - 1;
+        }
+        level -= 1;
+    }
+    // The index takes a bit of each axis in turn, the first axis highest.
+    let mut index = 0;
+    level = FINE_LEVELS;
+    while level > 0 {
+        level -= 1;
+        let mut axis = 0;
+        while axis < 3 {
+            index = index << 1 | (x[axis] ^ flip) >> level & 1;
+            axis += 1;
+        }
+    }
+    index as u16
+}
+
 /// The low 21 bits of `v`, each followed by two zeros.
 #[inline]
 fn spread(v: u64) -> u64 {
@@ -177,6 +255,21 @@ fn compact(v: u64) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Each fine cell once, and every step along the curve goes to one of the six next to it.
+    #[test]
+    fn the_curve_visits_all_fine_cells_in_unit_steps() {
+        let mut places = [[u32::MAX; 3]; FINE_CELLS];
+        for morton in 0..FINE_CELLS as u64 {
+            places[usize::from(HILBERT[morton as usize])] =
+                [compact(morton), compact(morton >> 1), compact(morton >> 2)];
+        }
+        assert!(places.iter().flatten().all(|c| *c < 1 << FINE_LEVELS));
+        for pair in places.windows(2) {
+            let steps: u32 = (0..3).map(|axis| pair[0][axis].abs_diff(pair[1][axis])).sum();
+            assert_eq!(steps, 1, "{pair:?}");
+        }
+    }
 
     #[test]
     fn bits_are_spread_as_the_loop_says() {

@@ -29,6 +29,8 @@ pub(crate) fn kernel_index(kernel: Kernel) -> u8 {
 /// Appends the blocks, of ascending ranges that do not overlap, whose boxes come within a squared radius of a
 /// position. The box distance repeats the operations of the photon distance, so that rounding loses no photon.
 pub(crate) type Cull = fn(&Boxes, &[Range<u32>], Vec3, f32, &mut Vec<u32>);
+/// Asks for what [`Gather`] reads of these blocks to be brought near.
+pub(crate) type Prefetch = fn(&[Block], &[u32]);
 /// Sums what a query finds in these blocks.
 pub(crate) type Gather = fn(&[Block], &[u32], &PreparedQuery, &mut NormalMemo) -> Gathered;
 /// Collects the photons within a squared radius of a position in these blocks; the ids of all slots come second.
@@ -39,6 +41,7 @@ pub(crate) type Scan = fn(&[Block], &[u32], &[u32], Vec3, f32, &mut Candidates);
 pub(crate) struct VectorKernels {
     pub(crate) name: &'static str,
     pub(crate) cull: Cull,
+    pub(crate) prefetch: Prefetch,
     pub(crate) gather: Gather,
     pub(crate) scan: Scan,
 }

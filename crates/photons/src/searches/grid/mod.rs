@@ -9,9 +9,12 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod batch;
 mod blocks;
+mod build;
 mod cells;
 mod kernels;
+mod reach;
 mod scalar;
 mod sort;
 mod table;
@@ -21,24 +24,25 @@ mod tests;
 use crate::inclusion::{PreparedQuery, radius_sq};
 use crate::{BuildOptions, GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use blocks::{Block, Boxes, LANES};
-use cells::{Cells, Reached};
-use kernels::{Candidates, NormalMemo, VectorKernels};
-use photinus_geometry::{Aabb, Vec3};
+use build::{Built, build};
+use cells::Cells;
+use kernels::{Candidates, VectorKernels};
+use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
-use std::ops::Range;
+use reach::Scratch;
 use std::sync::OnceLock;
 use table::CellTable;
 
 pub(crate) const ABOUT: &str = "sorted uniform grid with vector kernels";
 
 /// Queries that are worth a task of their own.
-const QUERIES_A_TASK: usize = 512;
+const QUERIES_A_TASK: usize = 2048;
 
 /// The finished grid.
 pub(crate) struct Grid {
-    /// `None` where the photons' box is too large for cells, or there are none: every query then reads all blocks.
-    index: Option<(Cells, CellTable)>,
+    cells: Cells,
+    table: CellTable,
     blocks: Vec<Block>,
     boxes: Boxes,
     /// The id of each slot's photon, padded to whole blocks.
@@ -49,114 +53,22 @@ pub(crate) struct Grid {
     kernels: VectorKernels,
 }
 
-/// What one query hands to the next, so that neighbours share work; results do not depend on it.
-struct Scratch {
-    /// The half cell and the radius (fine cells) that `ranges` are for.
-    half_cell: Vec3,
-    radius: f32,
-    /// Blocks of the cells around, as ascending ranges that do not overlap.
-    ranges: Vec<Range<u32>>,
-    /// Blocks in reach of the query.
-    hits: Vec<u32>,
-    memo: NormalMemo,
-}
-
-impl Scratch {
-    fn new() -> Self {
-        Self { half_cell: Vec3::NAN, radius: -1.0, ranges: Vec::new(), hits: Vec::new(), memo: NormalMemo::NONE }
-    }
-}
-
 impl Grid {
     pub(crate) fn new(photons: &[Photon], options: &BuildOptions) -> Self {
         Self::with_kernels(photons, options, kernels::available()[0])
     }
 
     fn with_kernels(photons: &[Photon], options: &BuildOptions, kernels: VectorKernels) -> Self {
-        let bounds = Aabb::around(photons.iter().map(Photon::position));
-        let radius = options.radius().unwrap_or_else(|| typical_radius(bounds, photons.len()));
-        let cells = Cells::new(bounds, radius);
-        let key = |p: &Photon| cells.as_ref().map_or(0, |c| c.key(p.position()));
-        let keyed: Vec<sort::Keyed> = (0u32..).zip(photons).map(|(id, p)| (key(p), id)).collect();
-        let keyed = sort::sort_by_key(keyed, cells.map_or(1, |c| c.key_end()));
-        let index = cells.map(|c| (c, CellTable::new(&c, keyed.iter().map(|k| k.0))));
-        let mut blocks = vec![Block::EMPTY; photons.len().div_ceil(LANES)];
-        let mut ids = vec![u32::MAX; blocks.len() * LANES];
-        for ((block, keyed), ids) in blocks.iter_mut().zip(keyed.chunks(LANES)).zip(ids.chunks_mut(LANES)) {
-            for (lane, (_, id)) in keyed.iter().enumerate() {
-                block.set(lane, &photons[*id as usize]);
-                ids[lane] = *id;
-            }
-        }
-        let boxes = Boxes::around(&blocks);
-        Self { index, blocks, boxes, ids, photon_count: photons.len(), slots: OnceLock::new(), kernels }
+        let Built { cells, table, blocks, boxes, ids } = build(photons, options);
+        Self { cells, table, blocks, boxes, ids, photon_count: photons.len(), slots: OnceLock::new(), kernels }
     }
-
-    /// Fills `scratch.hits` with the blocks that hold every photon within a radius of a position, ascending.
-    #[inline]
-    fn find_blocks(&self, position: Vec3, radius: f32, r2: f32, scratch: &mut Scratch) {
-        scratch.hits.clear();
-        if !(r2 >= 0.0) {
-            return;
-        }
-        if let Some((cells, table)) = &self.index {
-            let half_cell = Cells::half_cell(cells.place(position));
-            let radius = cells.radius(radius);
-            // Not equal where either is NaN.
-            if half_cell != scratch.half_cell || !(radius <= scratch.radius) {
-                (scratch.half_cell, scratch.radius) = (half_cell, radius);
-                self.collect_ranges(cells, table, scratch);
-            }
-        } else {
-            scratch.ranges.clear();
-            scratch.ranges.push(0..self.blocks.len() as u32);
-        }
-        (self.kernels.cull)(&self.boxes, &scratch.ranges, position, r2, &mut scratch.hits);
-    }
-
-    /// The blocks of the cells that balls of `scratch.radius` around `scratch.half_cell` may touch.
-    fn collect_ranges(&self, cells: &Cells, table: &CellTable, scratch: &mut Scratch) {
-        let ranges = &mut scratch.ranges;
-        ranges.clear();
-        let everything = match cells.reached(scratch.half_cell, scratch.radius) {
-            Reached::Nothing => return,
-            Reached::Cells(reached) => !table.collect(cells, reached, ranges),
-            Reached::Everything => true,
-        };
-        if everything {
-            ranges.push(0..self.blocks.len() as u32);
-            return;
-        }
-        ranges.sort_unstable_by_key(|slots| slots.start);
-        // Slots to blocks: a block may hold photons of several cells.
-        let lanes = LANES as u32;
-        let mut end = 0;
-        ranges.retain_mut(|slots| {
-            let blocks = (slots.start / lanes).max(end)..slots.end.div_ceil(lanes);
-            end = end.max(blocks.end);
-            *slots = blocks;
-            !slots.is_empty()
-        });
-    }
-}
-
-/// A radius that holds a few dozen photons where they lie evenly on the faces of their box.
-fn typical_radius(bounds: Aabb, photons: usize) -> f32 {
-    let area = 2.0 * bounds.half_area();
-    let radius = (area * 32.0 / photons as f32).sqrt();
-    // Photons on a line or at a point have no area.
-    if radius > 0.0 && radius.is_finite() { radius } else { bounds.diagonal() / 256.0 }
 }
 
 impl Search for Grid {
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
         assert_eq!(queries.len(), out.len(), "one result a query");
-        let one = |scratch: &mut Scratch, (query, out): (&GatherQuery, &mut Gathered)| {
-            let prepared = PreparedQuery::new(query, kernel);
-            self.find_blocks(query.position, query.radius, prepared.r2, scratch);
-            *out = (self.kernels.gather)(&self.blocks, &scratch.hits, &prepared, &mut scratch.memo);
-        };
-        queries.par_iter().zip(out).with_min_len(QUERIES_A_TASK).for_each_init(Scratch::new, one);
+        let parts = queries.par_chunks(QUERIES_A_TASK).zip(out.par_chunks_mut(QUERIES_A_TASK));
+        parts.for_each(|(queries, out)| self.gather_part(queries, kernel, out));
     }
 
     fn gather_counted(
@@ -216,8 +128,7 @@ impl Search for Grid {
         }
         let mut scratch = Scratch::new();
         let mut candidates = Candidates::default();
-        let mut reach =
-            self.index.as_ref().map_or(radius, |(cells, table)| cells.reach(position, k, table.photons_a_cell()));
+        let mut reach = self.cells.reach(position, k, self.table.photons_a_cell());
         loop {
             let last = !(reach < radius);
             let (ball, ball_sq) = if last { (radius, r2) } else { (reach, reach * reach) };
@@ -249,7 +160,12 @@ impl Search for Grid {
             + self.boxes.bytes()
             + self.ids.capacity() * size_of::<u32>()
             + self.slots.get().map_or(0, |s| s.capacity() * size_of::<u32>())
-            + self.index.as_ref().map_or(0, |(_, table)| table.bytes());
-        SearchSummary { name: "grid", photons: self.photon_count as u64, bytes: bytes as u64 }
+            + self.table.bytes();
+        SearchSummary {
+            name: "grid",
+            photons: self.photon_count as u64,
+            bytes: bytes as u64,
+            kernels: self.kernels.name,
+        }
     }
 }

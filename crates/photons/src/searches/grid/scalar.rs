@@ -3,13 +3,13 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::kernels::{Candidates, NormalMemo, VectorKernels, key};
 use crate::Gathered;
-use crate::flux::{mantissas, scale};
+use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
 use crate::inclusion::PreparedQuery;
 use photinus_geometry::Vec3;
 use std::ops::Range;
 
 /// These kernels, for any processor.
-pub(crate) const KERNELS: VectorKernels = VectorKernels { name: "scalar", cull, gather, scan };
+pub(crate) const KERNELS: VectorKernels = VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, scan };
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
     let position = position.to_array();
@@ -32,15 +32,15 @@ fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, _: &mut NormalM
         for (lane, d2) in block.distances_sq(query.position).into_iter().enumerate() {
             if d2 <= query.r2 && query.accepts(block.surface[lane]) {
                 let word = block.flux[lane];
-                let weight = scale(word) * query.kernel.weight(d2);
-                for (sum, mantissa) in sums.iter_mut().zip(mantissas(word)) {
+                let weight = raw_scale(word) * query.kernel.weight(d2);
+                for (sum, mantissa) in sums.iter_mut().zip(placed_mantissas(word).to_array()) {
                     sum[lane] += mantissa * weight;
                 }
                 count += 1;
             }
         }
     }
-    Gathered { flux: Vec3::from_array(sums.map(tree_sum)), count }
+    Gathered { flux: Vec3::from_array(sums.map(tree_sum)) * PLACED_UNITS, count }
 }
 
 /// Halves folded onto one another: lane i + lane i + 8, then 4, 2, 1.

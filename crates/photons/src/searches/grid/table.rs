@@ -4,6 +4,8 @@
 //! and two to four slots an occupied cell, of which there are no more than photons.
 
 use super::cells::{CellBox, Cells};
+use super::sort::{ITEMS_A_TASK, Item};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// An occupied cell: its index and its photons' slots.
@@ -27,28 +29,26 @@ pub(crate) struct CellTable {
 }
 
 impl CellTable {
-    /// The table of photons with these Morton keys, ascending.
-    pub(crate) fn new(cells: &Cells, keys: impl ExactSizeIterator<Item = u64> + Clone) -> Self {
-        let photon_count = keys.len();
-        let mut last = None;
-        let is_first = |key: u64| !last.replace(key).is_some_and(|last| Cells::same_cell(last, key));
-        let cell_count = keys.clone().map(is_first).filter(|first| *first).count();
-        let bits = (cell_count * 2).next_power_of_two().ilog2().max(1);
-        let mut table = Self { entries: vec![FREE; 1 << bits], shift: 64 - bits, cell_count, photon_count };
-        let mut run: Option<(u64, u32)> = None;
-        for (slot, key) in (0u32..).zip(keys) {
-            match run {
-                Some((of, _)) if Cells::same_cell(of, key) => {}
-                _ => {
-                    if let Some((of, first)) = run {
-                        table.insert(Entry { cell: cells.cell_of_key(of), first, end: slot });
-                    }
-                    run = Some((key, slot));
-                }
-            }
-        }
-        if let Some((of, first)) = run {
-            table.insert(Entry { cell: cells.cell_of_key(of), first, end: photon_count as u32 });
+    /// The table of photons whose items are `items`, ascending.
+    pub(crate) fn new<I: Item>(cells: &Cells, items: &[I]) -> Self {
+        // The slots where a cell begins, piece by piece.
+        let begins = |slot: usize| slot == 0 || !Cells::same_cell(items[slot - 1].key(), items[slot].key());
+        let piece = |piece: usize| {
+            let slots = piece * ITEMS_A_TASK..items.len().min((piece + 1) * ITEMS_A_TASK);
+            slots.filter(|slot| begins(*slot)).map(|slot| slot as u32).collect::<Vec<_>>()
+        };
+        let pieces = items.len().div_ceil(ITEMS_A_TASK);
+        let firsts: Vec<u32> = (0..pieces).into_par_iter().map(piece).collect::<Vec<_>>().concat();
+        let bits = (firsts.len() * 2).next_power_of_two().ilog2().max(1);
+        let mut table = Self {
+            entries: vec![FREE; 1 << bits],
+            shift: 64 - bits,
+            cell_count: firsts.len(),
+            photon_count: items.len(),
+        };
+        let ends = firsts.iter().skip(1).copied().chain([items.len() as u32]);
+        for (&first, end) in firsts.iter().zip(ends) {
+            table.insert(Entry { cell: cells.cell_of_key(items[first as usize].key()), first, end });
         }
         table
     }

@@ -15,14 +15,13 @@ fn bits(gathered: &[Gathered]) -> Vec<[u32; 4]> {
 #[test]
 fn vector_kernels_equal_the_scalar_kernel_bit_for_bit() {
     let kernels = kernels::available();
-    println!("seed {SEED}, kernels {:?}", kernels.iter().map(|k| k.name).collect::<Vec<_>>());
     for set in sets() {
         let queries = queries(&set, 160);
         let grid = |kernels| Grid::with_kernels(&set.photons, &BuildOptions { radius_hint: set.radius }, kernels);
         let scalar = grid(scalar::KERNELS);
         for &kernels in kernels {
             let vector = grid(kernels);
-            let context = format!("{} on '{}'", kernels.name, set.name);
+            let context = format!("seed {SEED}: {} on '{}'", kernels.name, set.name);
             for kernel in KERNELS {
                 let gather = |grid: &Grid| {
                     let mut out = vec![Gathered::default(); queries.len()];
@@ -48,7 +47,6 @@ fn vector_kernels_equal_the_scalar_kernel_bit_for_bit() {
 
 #[test]
 fn results_depend_on_neither_batch_nor_threads() {
-    println!("seed {SEED}");
     for set in sets().iter().filter(|set| ["box", "sphere", "room on a plane"].contains(&set.name)) {
         let mut queries = queries(set, 3000);
         let gather = |threads: usize, queries: &[GatherQuery]| {
@@ -62,17 +60,17 @@ fn results_depend_on_neither_batch_nor_threads() {
         };
         let expected = gather(1, &queries);
         for threads in [2, 7] {
-            assert_eq!(gather(threads, &queries), expected, "{} threads on '{}'", threads, set.name);
+            assert_eq!(gather(threads, &queries), expected, "seed {SEED}: {threads} threads on '{}'", set.name);
         }
         let grid = Grid::new(&set.photons, &BuildOptions { radius_hint: set.radius });
         for (query, expected) in queries.iter().zip(&expected).take(300) {
             let mut out = [Gathered::default()];
             grid.gather(std::slice::from_ref(query), Kernel::Epanechnikov, &mut out);
-            assert_eq!(bits(&out), [*expected], "alone on '{}': {query:?}", set.name);
+            assert_eq!(bits(&out), [*expected], "seed {SEED}: alone on '{}': {query:?}", set.name);
         }
         queries.reverse();
         let mut reversed = gather(2, &queries);
         reversed.reverse();
-        assert_eq!(reversed, expected, "reversed on '{}'", set.name);
+        assert_eq!(reversed, expected, "seed {SEED}: reversed on '{}'", set.name);
     }
 }
