@@ -157,7 +157,12 @@ impl<'a> Builder<'a> {
     }
 
     /// The place below a bump or normal map: `n` is the new unit normal on the side of `wo`.
+    ///
+    /// A normal that turns away from `wo` belongs to the hidden side of a bump; as in Mitsuba the opposite slope stands in
+    /// for it, which `wo` does see.
     pub fn tilted(&mut self, place: Place, n: Vec3) -> Place {
+        let smooth = self.axes(place).n;
+        let n = if n.dot(self.bsdf.wo) > 0.0 { n } else { reflect(n, smooth) };
         let bent = usable_normal(n, self.bsdf.ng, self.bsdf.wo);
         let axes = sided_frame(bent, self.point.dp_du, self.side);
         let cos = self.bsdf.ns.dot(bent).clamp(1e-3, 1.0);

@@ -2,12 +2,11 @@
 
 use super::subjects::subjects;
 use super::{flat_point, sampler, sphere, tilted_point};
-use crate::bsdf::microfacet::reflect;
-use crate::bsdf::{LobeSet, TransportMode};
+use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use photinus_geometry::Vec3;
 
 /// Index of refraction on either side, relative to each other: transmission scales radiance by its square.
-fn eta_towards(bsdf: &crate::bsdf::Bsdf, wi: Vec3) -> f32 {
+fn eta_towards(bsdf: &Bsdf, wi: Vec3) -> f32 {
     if bsdf.geometric_normal().dot(wi) > 0.0 {
         return 1.0;
     }
@@ -62,12 +61,12 @@ fn importance_is_the_adjoint_of_radiance() {
                 let mut s = sampler(t as u32, k);
                 let (light, eye) = (sphere(s.next_2d()), sphere(s.next_2d()));
                 let (photon, radiance) = (materials.resolve(id, &point, light), materials.resolve(id, &point, eye));
-                // Bending a normal towards its viewer cannot be the same for two viewers.
-                let bent = |b: &crate::bsdf::Bsdf, w: Vec3| {
-                    let lifted = |n: Vec3| reflect(w, n).dot(b.geometric_normal()) < 2e-3;
-                    b.frames.iter().any(|f| f.axes.n.dot(w) < 2e-3 || lifted(f.axes.n))
-                };
-                if light.z.abs() < 0.05 || eye.z.abs() < 0.05 || bent(&photon, light) || bent(&radiance, eye) {
+                // A normal turned towards its viewer cannot be the same for two viewers.
+                let outward = |b: &Bsdf, i: usize| b.frames[i].axes.n * b.geometric_normal().z;
+                let same = photon.frame_count == radiance.frame_count
+                    && (0..usize::from(photon.frame_count))
+                        .all(|i| (outward(&photon, i) - outward(&radiance, i)).length() < 1e-5);
+                if light.z.abs() < 0.05 || eye.z.abs() < 0.05 || !same {
                     continue;
                 }
                 let a = photon.eval(LobeSet::ALL, eye, TransportMode::Importance) / eye.z.abs();
