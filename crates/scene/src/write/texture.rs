@@ -3,7 +3,7 @@
 use super::names::file_name;
 use super::xml::numbers;
 use super::{WriteError, Writer, make_folder};
-use crate::{Bitmap, BitmapPixels, ColorInput, FloatInput, TextureFilter, TextureId, TextureKind, WrapMode};
+use crate::{Bitmap, BitmapPixels, ColorInput, FloatInput, Material, TextureFilter, TextureId, TextureKind, WrapMode};
 use glam::{DAffine3, DMat3, DVec3};
 use photinus_geometry::Affine3A;
 use photinus_image::{Channel, Layer, Layers};
@@ -43,8 +43,8 @@ impl Writer<'_> {
                 self.xml.value("string", "wrap_mode", wrap);
                 if *alpha {
                     self.xml.value("string", "channel", "a");
-                } else if bitmap.has_holes() {
-                    // Said, because a mask would take the holes for its opacity.
+                } else if bitmap.has_holes() && self.is_opacity(id) {
+                    // Said, because the mask would take the holes for its opacity.
                     self.xml.value("string", "channel", "all");
                 }
                 // Mitsuba's v runs down the picture.
@@ -63,6 +63,12 @@ impl Writer<'_> {
         }
         self.xml.close("texture");
         Ok(())
+    }
+
+    /// Whether a mask takes its opacity from this texture.
+    fn is_opacity(&self, id: TextureId) -> bool {
+        let takes = |m: &Material| matches!(m, Material::Mask { opacity, .. } if *opacity == FloatInput::Texture(id));
+        self.scene.materials.iter().any(|m| takes(&m.material))
     }
 
     /// The plane's part of a map of texture coordinates.

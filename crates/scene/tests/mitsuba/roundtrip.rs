@@ -201,6 +201,7 @@ fn materials() -> Vec<Material> {
         Material::TwoSided { front: MaterialId(0), back: MaterialId(0) },
         Material::TwoSided { front: MaterialId(8), back: MaterialId(4) },
         Material::Mask { opacity: FloatInput::Texture(TextureId(3)), nested: MaterialId(12) },
+        Material::Mask { opacity: FloatInput::Texture(TextureId(1)), nested: MaterialId(0) },
         Material::Blend { weight: number(30), a: MaterialId(0), b: MaterialId(5) },
         Material::BumpMap { height: TextureId(2), scale: 0.05, nested: MaterialId(8) },
         Material::NormalMap { normals: TextureId(2), nested: MaterialId(0) },
