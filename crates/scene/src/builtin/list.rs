@@ -1,6 +1,6 @@
 //! The list of built-in scenes: it feeds the command line, the help, the documentation and the tests.
 
-use super::{Builtin, cornell, furnace, room, spheres, texture, two_spheres, water_lily};
+use super::{Builtin, cornell, furnace, room, spheres, study, texture, two_spheres, water_lily};
 
 const SCENES: &[Builtin] = &[
     Builtin {
@@ -50,6 +50,12 @@ const SCENES: &[Builtin] = &[
         description: "A tea table with a chequered cloth, a marbled pot, cups, fruit and flowers.",
         triangles: 7590,
         make: texture::tea_table,
+    },
+    Builtin {
+        name: "study-22054",
+        description: "A study in the evening: desk with lamp, books and globe, a reading chair and full shelves.",
+        triangles: 22_054,
+        make: study::study,
     },
     Builtin {
         name: "water-lily-1426",

@@ -8,6 +8,7 @@ mod list;
 mod room;
 mod spectra;
 mod spheres;
+mod study;
 mod texture;
 mod two_spheres;
 mod water_lily;

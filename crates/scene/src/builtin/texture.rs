@@ -1,8 +1,7 @@
 //! Textured models of exactly 10, 1210 and 7590 triangles: they prove barycentric coordinates by eye.
 
 use super::build::{
-    Dice, Ends, Finish, Join, LeafShape, Part, Place, Stage, bitmap, bitmap::hex, camera, curve, film, leaf, linear,
-    patch, petal, shares, sin_cos_degrees, standing, tube,
+    Finish, Join, Part, Place, Stage, bitmap, bitmap::hex, camera, film, linear, patch, sin_cos_degrees, standing,
 };
 use super::furniture::{ceramics, ceramics::VaseShape, fruit, plants};
 use crate::{EnvironmentLight, Light, Scene};

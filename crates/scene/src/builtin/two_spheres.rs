@@ -43,6 +43,7 @@ fn two_spheres(lamp_x: [f32; 2], lamp_z: [f32; 2], radiance: [f32; 3]) -> Scene 
         red,
         quads(&[[[5.528, 0.0, 0.0], [5.496, 0.0, 5.592], [5.56, 5.488, 5.592], [5.56, 5.488, 0.0]]]),
     );
+    #[allow(clippy::approx_constant)] // A corner of the block, not pi.
     let (a, b, c, d) = ([4.23, 2.47], [2.65, 2.96], [3.14, 4.56], [4.72, 4.06]);
     let at = |p: [f32; 2], y: f32| [p[0], y, p[1]];
     let side = |p, q| [at(p, 0.0), at(p, 3.3), at(q, 3.3), at(q, 0.0)];

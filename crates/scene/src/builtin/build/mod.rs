@@ -15,7 +15,7 @@ mod soft;
 mod stage;
 mod tube;
 
-pub use book::{Book, book};
+pub use book::book;
 pub use boxes::{Faces, bevelled, cuboid, frame, standing};
 pub use curve::{curve, profile};
 pub use dice::{Dice, shares};

@@ -80,11 +80,6 @@ impl Stage {
         self.printed("walnut", [24.0, 60.0], Finish::Satin(0.2), || bitmap::grain(12, hex(0x7A5138), hex(0x3E2517)))
     }
 
-    /// Pale wood.
-    pub fn birch(&mut self) -> MaterialId {
-        self.printed("birch", [30.0, 80.0], Finish::Satin(0.3), || bitmap::grain(13, hex(0xE0C79B), hex(0xBE9A68)))
-    }
-
     /// Brass, lightly brushed (eta and k of Johnson and Christy's copper and zinc alloys, rounded).
     pub fn brass(&mut self) -> MaterialId {
         self.metal("brass", 0.12, [0.444, 0.527, 1.094], [3.695, 2.765, 1.829])
@@ -92,7 +87,7 @@ impl Stage {
 
     /// Satin steel (eta and k of chromium, rounded).
     pub fn steel(&mut self) -> MaterialId {
-        self.metal("steel", 0.1, [3.18, 3.18, 2.33], [3.31, 3.33, 3.14])
+        self.metal("steel", 0.1, [3.18, 3.18, 2.33], [3.31, 3.33, 3.13])
     }
 
     fn metal(&mut self, name: &str, roughness: f32, eta: [f32; 3], k: [f32; 3]) -> MaterialId {

@@ -96,8 +96,11 @@ fn leaves_have_exactly_the_triangles_asked_for_and_face_up() {
 #[test]
 fn books_are_boards_and_pages() {
     let book = book(3.0, 10.0, 7.0);
-    assert!(volume(book.binding, 52).is_none());
-    assert!(volume(book.pages, 12).is_some());
+    assert!(volume(book.binding, 36).is_none());
+    let pages = Mesh::from(book.pages.clone());
+    // Head up, tail down, fore edge away from the back.
+    assert_eq!([0, 4, 8].map(|v| pages.normals[v]), [Vec3::Y, -Vec3::Y, -Vec3::Z]);
+    assert!(volume(book.pages, 6).is_none());
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub fn globe(stage: &mut Stage, place: Place, radius: f32) {
     let mut outline = vec![[0.0, 0.0]];
     outline.extend(foot);
     outline.push([0.0, 0.62 * radius]);
-    stage.mesh("globe-foot", wood, revolve(&outline, 24).uv_scaled(20.0, 10.0).placed(place));
+    stage.mesh("globe-foot", wood, revolve(&outline, 20).uv_scaled(20.0, 10.0).placed(place));
     let brass = stage.brass();
     let middle = place.shift(0.0, 1.74 * radius, 0.0).roll(-23.4);
     let arc: Vec<Vec3> = (0..=24)
@@ -74,7 +74,7 @@ pub fn globe(stage: &mut Stage, place: Place, radius: f32) {
     metal.add(pin(-1.14 * radius, -0.98 * radius));
     stage.mesh("meridian", brass, metal.placed(middle));
     let map = stage.printed("world-map", [1.0, 1.0], Finish::Satin(0.2), || bitmap::world(41));
-    stage.mesh("globe", map, revolve(&ball(radius, 0.0, 24), 40).placed(middle.yaw(200.0)));
+    stage.mesh("globe", map, revolve(&ball(radius, 0.0, 20), 32).placed(middle.yaw(200.0)));
 }
 
 /// A round clock on a wall, facing +z, at ten past ten.

@@ -17,7 +17,7 @@ pub fn pot(stage: &mut Stage, place: Place, radius: f32, height: f32, glaze: Mat
             .map(|p: [f32; 2]| [p[0] * radius, p[1] * height]),
         2,
     );
-    stage.mesh("pot", glaze, revolve(&hollow(&outer, 0.07 * radius, 0.55 * height), 28).placed(place));
+    stage.mesh("pot", glaze, revolve(&hollow(&outer, 0.07 * radius, 0.55 * height), 24).placed(place));
     let earth = stage.paint("earth", 0x3A2B20, Finish::Matte);
     let heap = [[0.94 * radius, 0.8 * height], [0.5 * radius, 0.85 * height], [0.0, 0.86 * height]];
     stage.mesh("earth", earth, revolve(&heap, 20).placed(place));
@@ -238,7 +238,7 @@ pub fn shrub(stage: &mut Stage, place: Place, size: [f32; 2], color: u32, triang
     for k in 0..9 {
         let mut dice = Dice::new(161 + u64::from(seed), k);
         let at = place.yaw(40.0 * k as f32).pitch(dice.between(8.0, 34.0));
-        let path = curve(&[[0.0, 0.0, 0.0], [0.6, 0.4 * height, 0.0], [0.0, 0.82 * height, 1.0]], 2);
+        let path = curve(&[[0.0, 0.03 * height, 0.0], [0.6, 0.4 * height, 0.0], [0.0, 0.82 * height, 1.0]], 2);
         wood.add(tube(&path, 5, Ends::Open, |s| 0.028 * height * (1.0 - 0.8 * s)).placed(at));
     }
     let left = triangles.saturating_sub(wood.triangle_count());
@@ -252,7 +252,7 @@ pub fn shrub(stage: &mut Stage, place: Place, size: [f32; 2], color: u32, triang
             let (sin, cos) = crate::builtin::build::sin_cos_degrees(GOLDEN_ANGLE * i as f32);
             let flat = (1.0 - z * z).max(0.0).sqrt();
             let out = Vec3::new(flat * cos, z, flat * sin);
-            let p = Vec3::new(out.x * radius, 0.53 * height + out.y * 0.45 * height, out.z * radius) * reach;
+            let p = Vec3::new(out.x * radius, 0.58 * height + out.y * 0.42 * height, out.z * radius) * reach;
             let jitter = Vec3::new(dice.between(-0.7, 0.7), dice.between(-0.3, 0.9), dice.between(-0.7, 0.7));
             Place::facing(p, out + jitter, Vec3::Y + out * 0.4).within(place)
         })

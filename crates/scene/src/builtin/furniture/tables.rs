@@ -1,4 +1,4 @@
-//! Tables, sideboards and a desk.
+//! Tables and a desk.
 
 use super::seats::corners;
 use crate::MaterialId;
@@ -65,32 +65,6 @@ pub fn dining_table(stage: &mut Stage, place: Place, wood: MaterialId, width: f3
 /// Height of the dining table's top.
 pub const DINING_TABLE_TOP: f32 = 29.0;
 
-/// A sideboard on legs with doors in front: `doors` doors of 16 units, 14 deep, 26 high.
-pub fn sideboard(stage: &mut Stage, place: Place, wood: MaterialId, doors: usize) {
-    let width = 16.0 * doors as f32 + 2.0;
-    let mut part = bevelled([-0.5 * width, 7.0, -7.0], [0.5 * width, 26.0, 6.2], 0.3);
-    part.add(bevelled([-0.5 * width - 0.8, 26.0, -7.0], [0.5 * width + 0.8, 27.2, 7.4], 0.3));
-    for (x, z) in corners(width - 5.0, 10.0) {
-        let leg = revolve(&[[0.0, 0.0], [0.6, 0.0], [0.65, 0.4], [1.1, 7.0], [0.0, 7.0]], 10);
-        part.add(leg.placed(Place::at(x, 0.0, z - 0.4)));
-    }
-    let mut knobs = Part::default();
-    for k in 0..doors {
-        let x = 16.0 * (k as f32 - 0.5 * (doors as f32 - 1.0));
-        part.add(bevelled([x - 7.7, 8.2, 6.2], [x + 7.7, 25.0, 7.0], 0.25));
-        part.add(bevelled([x - 5.6, 10.2, 7.0], [x + 5.6, 23.0, 7.35], 0.3));
-        let side = if k % 2 == 0 { 6.6 } else { -6.6 };
-        let knob = profile(&[[0.0, 0.0], [0.25, 0.05], [0.3, 0.5], [0.6, 0.8], [0.5, 1.15], [0.0, 1.25]], 2);
-        knobs.add(revolve(&knob, 12).placed(Place::at(x + side, 17.0, 6.95).pitch(90.0)));
-    }
-    stage.mesh("sideboard", wood, part.placed(place));
-    let brass = stage.brass();
-    stage.mesh("knobs", brass, knobs.placed(place));
-}
-
-/// Height of the sideboard's top.
-pub const SIDEBOARD_TOP: f32 = 27.2;
-
 /// A writing desk with two pedestals of drawers, 58 x 28, 30 high; its front is where one sits.
 pub fn desk(stage: &mut Stage, place: Place, wood: MaterialId) {
     let mut part = bevelled([-29.0, 28.4, -14.0], [29.0, 30.0, 14.0], 0.4);
@@ -102,14 +76,14 @@ pub fn desk(stage: &mut Stage, place: Place, wood: MaterialId) {
         for k in 0..3 {
             let y = 3.6 + 8.2 * k as f32;
             part.add(bevelled([low + 0.8, y, 12.0], [high - 0.8, y + 7.6, 12.9], 0.3));
-            let pull = soft_box([2.6, 0.4, 0.5], 3.0, [6, 2, 2]);
+            let pull = soft_box([2.6, 0.4, 0.5], 3.0, [4, 2, 2]);
             handles.add(pull.placed(Place::at(0.5 * (low + high), y + 3.8, 13.3)));
         }
     }
     part.add(bevelled([-11.0, 24.6, -12.0], [11.0, 28.4, 11.0], 0.2));
     part.add(bevelled([-10.4, 25.0, 11.0], [10.4, 28.2, 11.9], 0.3));
     part.add(bevelled([-11.0, 8.0, -12.4], [11.0, 24.6, -11.4], 0.2));
-    handles.add(soft_box([2.6, 0.4, 0.5], 3.0, [6, 2, 2]).placed(Place::at(0.0, 26.6, 12.3)));
+    handles.add(soft_box([2.6, 0.4, 0.5], 3.0, [4, 2, 2]).placed(Place::at(0.0, 26.6, 12.3)));
     stage.mesh("desk", wood, part.placed(place));
     let brass = stage.brass();
     stage.mesh("handles", brass, handles.placed(place));

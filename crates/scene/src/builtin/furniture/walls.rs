@@ -114,7 +114,7 @@ pub fn rug(
 ) {
     let wool = stage.printed(name, [1.0, 1.0], Finish::Matte, picture);
     let [w, d] = size;
-    let top = patch(24, 16, Join::Open, |u, v| {
+    let top = patch(20, 14, Join::Open, |u, v| {
         let edge = (u.min(1.0 - u) * w).min(v.min(1.0 - v) * d);
         let lift = 0.12 * sin_cos_degrees(900.0 * u).0 * sin_cos_degrees(700.0 * v + 40.0).0;
         Vec3::new((u - 0.5) * w, 0.12 + (0.45 + lift) * (edge / 2.0).min(1.0), (0.5 - v) * d)
