@@ -121,3 +121,47 @@ fn render_and_compare() {
     assert_eq!(same["mean_a"], same["mean_b"]);
     assert!(compare("b.exr")["relmse"].as_f64().unwrap() > 0.0, "another seed gives another picture");
 }
+
+/// Names of all fields of a document, down to its leaves.
+fn names<'a>(value: &'a Value, found: &mut Vec<&'a str>) {
+    match value {
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                found.push(name);
+                names(value, found);
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|item| names(item, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_field_is_documented() {
+    let page = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/statistics.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str]| json(&run_in(folder.path(), arguments));
+    let mut documents = vec![run(&[&["render", "-o", "a.exr", "--json"], SMALL].concat())];
+    // Settings carry the options' own names.
+    documents[0]["settings"] = Value::Null;
+    for arguments in
+        [&["tree", "cornell", "--json"][..], &["compare", "a.exr", "a.exr", "--json"], &["scenes", "--json"]]
+    {
+        documents.push(run(arguments));
+    }
+    let mut info = run(&["info", "cornell", "--json"]);
+    for part in ["lights_by_kind", "camera", "bounds"] {
+        info[part] = Value::Null;
+    }
+    documents.push(info);
+    for document in &documents {
+        let mut found = Vec::new();
+        names(document, &mut found);
+        assert!(found.len() > 3);
+        for name in found {
+            let mentioned = [format!("`{name}`"), format!(".{name}`")].iter().any(|word| page.contains(word));
+            assert!(mentioned, "docs/statistics.md does not mention `{name}`");
+        }
+    }
+}
