@@ -47,6 +47,20 @@ fn tree() {
 }
 
 #[test]
+fn trees_are_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |file| run_in(folder.path(), &["tree", "water-lily-1426", "--accel", "kd-tree", "--draw", file]);
+    success(&draw("a.svg"));
+    success(&draw("a.png"));
+    let svg = std::fs::read_to_string(folder.path().join("a.svg")).unwrap();
+    assert!(svg.starts_with("<svg ") && svg.matches("<path ").count() > 3);
+    let png = photinus::image::read_image(folder.path().join("a.png")).unwrap();
+    assert!(png.pixels.iter().any(|pixel| pixel[0] > 0.1), "nothing is drawn");
+    let refused = common::refused(&run_in(folder.path(), &["tree", "cornell", "--draw", "b.png"]), 1);
+    assert!(refused.contains("--draw: wide-bvh is not drawn; use --accel kd-tree"), "{refused}");
+}
+
+#[test]
 fn render_and_compare() {
     let folder = tempfile::tempdir().unwrap();
     let render =

@@ -1,5 +1,6 @@
 //! Files that this library writes beside pictures.
 
+use crate::tree_drawing::TreeDrawing;
 use crate::{Error, Result};
 use serde::Serialize;
 use std::path::Path;
@@ -13,6 +14,18 @@ pub fn write_json(path: &Path, document: &impl Serialize) -> Result<()> {
         .map_err(|e| Error::Write { path: path.to_path_buf(), source: std::io::Error::other(e) })?;
     bytes.push(b'\n');
     Ok(photinus_image::write_atomic(path, &bytes)?)
+}
+
+/// Writes the drawing of a tree as PNG, or as SVG where the file's name ends in `.svg`.
+///
+/// # Errors
+/// [`Error::Image`] where the file cannot be written.
+pub fn write_drawing(path: &Path, drawing: &TreeDrawing) -> Result<()> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
+        return Ok(photinus_image::write_atomic(path, drawing.to_svg().as_bytes())?);
+    }
+    let (width, height) = (drawing.width as usize, drawing.height as usize);
+    Ok(photinus_image::write_png8(path, width, height, &drawing.to_pixels())?)
 }
 
 /// Finds out whether a file can be written at `path`, before hours of work depend on it.

@@ -1,6 +1,7 @@
 //! Time spent in queries: structures and searches that hand every batch on to another and look at the clock around it.
 
 use crate::machine::thread_cpu_seconds;
+use photinus_accel::structures::kd_tree::KdTree;
 use photinus_accel::{RayCounters, Structure, StructureSummary};
 use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_photons::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
@@ -127,6 +128,10 @@ impl Structure for TimedStructure {
 
     fn summary(&self) -> StructureSummary {
         self.inner.summary()
+    }
+
+    fn as_kd_tree(&self) -> Option<&KdTree> {
+        self.inner.as_kd_tree()
     }
 }
 

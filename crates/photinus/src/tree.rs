@@ -1,7 +1,8 @@
 //! An acceleration structure built for its own sake, and described.
 
-use crate::Result;
 use crate::names::{self, ACCEL, CANDIDATES};
+use crate::tree_drawing::{TreeDrawing, TreeView, draw_kd_tree};
+use crate::{Error, Result};
 use photinus_accel::{BuildOptions, Structure, StructureSummary};
 use photinus_geometry::Primitives;
 use photinus_render::Compiled;
@@ -81,6 +82,20 @@ pub fn build_tree(scene: Scene, options: &TreeOptions) -> Result<Tree> {
         structure: structure.summary(),
     };
     Ok(Tree { primitives, structure, report })
+}
+
+impl Tree {
+    /// Draws the tree: planes across x red, across y green, across z blue, leaves white.
+    ///
+    /// # Errors
+    /// [`crate::Error::Setting`] where the structure is no kd-tree: only those are drawn.
+    pub fn draw(&self, view: &TreeView) -> Result<TreeDrawing> {
+        let tree = self.structure.as_kd_tree().ok_or_else(|| {
+            let name = self.report.structure.name;
+            Error::setting("--draw", format!("{name} is not drawn; use --accel kd-tree"))
+        })?;
+        Ok(draw_kd_tree(tree, view))
+    }
 }
 
 #[cfg(test)]

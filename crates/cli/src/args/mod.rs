@@ -99,6 +99,9 @@ pub struct TreeArgs {
     #[arg(long, value_name = "NAME", default_value = photinus::names::CANDIDATES.default,
         value_parser = members::parser(photinus::names::CANDIDATES))]
     pub candidates: String,
+    /// Draw the tree into a picture; kd-trees only
+    #[arg(long, value_name = "OUT.{png,svg}", value_parser = values::drawing)]
+    pub draw: Option<PathBuf>,
     /// Print one JSON document
     #[arg(long)]
     pub json: bool,

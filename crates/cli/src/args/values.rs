@@ -1,5 +1,7 @@
 //! Values of options that are more than a word: numbers in a range, sizes, cameras, windows.
 
+use std::path::PathBuf;
+
 /// Pixels across and down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
@@ -80,6 +82,15 @@ fn parallel(camera: &CameraValue) -> bool {
 fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
     let numbers: Option<Vec<T>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
     numbers?.try_into().ok()
+}
+
+/// The file of a drawing, of a kind that its name tells.
+pub fn drawing(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+        Some("png" | "svg") => Ok(path),
+        _ => Err("its name must end in .png or .svg".into()),
+    }
 }
 
 /// A finite number above zero.

@@ -3,7 +3,7 @@
 use crate::args::TreeArgs;
 use crate::failure::{Outcome, Result};
 use crate::report;
-use photinus::TreeOptions;
+use photinus::{TreeOptions, TreeView};
 
 /// Builds and describes.
 pub fn run(args: &TreeArgs) -> Result {
@@ -15,7 +15,13 @@ pub fn run(args: &TreeArgs) -> Result {
         triangle_cost: args.triangle_cost,
         candidates: args.candidates.clone(),
     };
+    if let Some(path) = &args.draw {
+        photinus::check_writable(path)?;
+    }
     let tree = photinus::build_tree(scene, &options)?;
+    if let Some(path) = &args.draw {
+        photinus::write_drawing(path, &tree.draw(&TreeView::default())?)?;
+    }
     let report = &tree.report;
     if args.json {
         report::json(report)?;
