@@ -35,7 +35,7 @@ impl EyePass<'_> {
 
     fn direct_tile(&self, maps: &Maps, window: [u32; 4], index: u32, tile: &mut Tile, counters: &mut Counters) {
         let [x0, y0, w, h] = window;
-        let instrumented = index as usize % INSTRUMENTED == 0;
+        let instrumented = (index as usize).is_multiple_of(INSTRUMENTED);
         let mut tracer = Tracer::new(self.world, instrumented);
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
         let mut scratch = EstimateScratch::default();

@@ -147,7 +147,7 @@ impl EyePass<'_> {
     /// the pass. Where it is stopped, finished tiles are there.
     pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
         self.run_tiles(film, observer, |x0, y0, w, h, index, tile, counters| {
-            let instrumented = index as usize % INSTRUMENTED == 0;
+            let instrumented = (index as usize).is_multiple_of(INSTRUMENTED);
             let mut tracer = Tracer::new(self.world, instrumented);
             for sample in 0..self.spp {
                 let paths = self.camera_paths(x0, y0, w, h, sample, tile);

@@ -1,6 +1,9 @@
 //! Rendering: photon pass, eye pass, radiance estimates, surface scattering, film, progressive passes, and a path
 //! tracer as ground truth.
 
+// Expected values may come from any mathematics library: they are compared within tolerances.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
 pub mod bsdf;
 mod camera;
 mod control;

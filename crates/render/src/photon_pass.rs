@@ -94,7 +94,7 @@ impl PhotonPass {
     fn chunk(&self, world: &World, lights: &Lights, chunk: u32) -> (StoredPhotons, Counters) {
         let mut stored = StoredPhotons::default();
         let mut counters = Counters::default();
-        let mut tracer = Tracer::new(world, chunk as usize % INSTRUMENTED == 0);
+        let mut tracer = Tracer::new(world, (chunk as usize).is_multiple_of(INSTRUMENTED));
         let first = chunk * CHUNK;
         let mut walks = Vec::with_capacity(CHUNK as usize);
         for index in first..(first + CHUNK).min(self.count) {

@@ -127,6 +127,10 @@ pub(crate) fn sky_view(world: &World, points: &[VisiblePoint], seed: u64) -> Sky
                 continue;
             }
             let point = world.surface(ray, hit, 0.0);
+            if world.emitted(&point, -ray.dir) != Vec3::ZERO {
+                view.add_lamp();
+                continue;
+            }
             let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, &point, -ray.dir);
             if bsdf.has(LobeSet::DELTA_TRANSMISSION) {
                 next.push(Ray::new(point.ray_origin(ray.dir), ray.dir));

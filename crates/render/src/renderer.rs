@@ -50,6 +50,8 @@ pub struct Renderer<'w> {
     radii: Radii,
     /// Photons stored for each one emitted, by the pilot.
     stored_share: f32,
+    /// Light covers so much of the view that diffuse surfaces look for it by chance too.
+    probe: bool,
     /// Maps that all passes share, in the modes with one photon map.
     shared_maps: Option<Maps>,
     film: Film,
@@ -87,6 +89,7 @@ impl<'w> Renderer<'w> {
             crop,
             max_depth,
             photons,
+            probe: lights.has_environment() || view.light_is_wide(),
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
             stored_share: 0.0,
@@ -206,7 +209,7 @@ impl<'w> Renderer<'w> {
             spp: self.settings.spp.max(1),
             max_depth: self.max_depth,
             maps,
-            probe: self.lights.has_environment(),
+            probe: self.probe,
         };
         let result = match (self.settings.mode, maps) {
             (Mode::Direct, Some(maps)) => eye.run_direct(maps, &mut buffer, observer),

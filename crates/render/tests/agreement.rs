@@ -1,6 +1,8 @@
 //! Modes against each other: photons must find the light that path tracing finds, and the same settings must give the
 //! same bits. All renders use the seed in `common::SEED`.
 
+#![allow(clippy::disallowed_methods)] // Expected values may come from any mathematics library.
+
 mod common;
 
 use common::*;

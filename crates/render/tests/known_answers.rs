@@ -1,6 +1,8 @@
 //! Scenes whose radiance is known in closed form, in every mode that claims to solve them. All renders use the seed in
 //! `common::SEED`.
 
+#![allow(clippy::disallowed_methods)] // Expected values may come from any mathematics library.
+
 mod common;
 
 use common::*;

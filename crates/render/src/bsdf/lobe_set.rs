@@ -38,14 +38,14 @@ impl LobeSet {
     /// Single directions, either way.
     pub const DELTA: Self = Self(8 | 128);
     /// Lobes with a density over directions.
-    pub const NON_DELTA: Self = Self(0xFF & !(8 | 128));
+    pub const NON_DELTA: Self = Self(!(8 | 128));
     /// Everything.
     pub const ALL: Self = Self(0xFF);
 
     /// Lobes at which photons are stored and gathered: diffuse ones and rough reflection.
     pub const GATHER: Self = Self(1 | 2 | 16);
     /// Lobes through which eye paths go on: all others.
-    pub const CONTINUE: Self = Self(0xFF & !(1 | 2 | 16));
+    pub const CONTINUE: Self = Self(!(1 | 2 | 16));
 
     /// The eight kinds.
     pub const KINDS: [Self; 8] = [

@@ -6,11 +6,13 @@ use std::f32::consts::TAU;
 const COLUMNS: usize = 32;
 const ROWS: usize = 16;
 
-/// How often rays from visible surfaces reach the sky, by direction, in bins of equal solid angle.
+/// How often rays from visible surfaces reach the sky, by direction, in bins of equal solid angle, and how often they end
+/// on surfaces that emit.
 #[derive(Clone, Debug)]
 pub(crate) struct SkyView {
     escapes: Vec<u32>,
     rays: u32,
+    lamps: u32,
 }
 
 impl SkyView {
@@ -19,7 +21,7 @@ impl SkyView {
 
     /// Nothing seen yet.
     pub fn new() -> Self {
-        Self { escapes: vec![0; Self::BINS], rays: 0 }
+        Self { escapes: vec![0; Self::BINS], rays: 0, lamps: 0 }
     }
 
     /// Counts a ray, cosine-distributed from a surface, that did or did not reach the sky along `dir`.
@@ -28,6 +30,18 @@ impl SkyView {
         if escaped {
             self.escapes[Self::bin(dir)] += 1;
         }
+    }
+
+    /// Counts a ray that ended on a surface that emits.
+    pub fn add_lamp(&mut self) {
+        self.rays += 1;
+        self.lamps += 1;
+    }
+
+    /// Whether so much of the view is lit by surfaces or sky that chance finds light about as well as a shadow ray does:
+    /// more than one ray in twenty ends there.
+    pub fn light_is_wide(&self) -> bool {
+        20 * (u64::from(self.lamps) + self.escapes.iter().map(|&e| u64::from(e)).sum::<u64>()) > u64::from(self.rays)
     }
 
     /// Share of the rays that reached the sky, at least 2 %: a window may be missed by all of them.

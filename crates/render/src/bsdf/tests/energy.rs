@@ -212,9 +212,9 @@ fn masks_and_blends_scale_what_they_hold() {
         Material::Diffuse { reflectance: grey(0.5) },
         Material::Mask { opacity: super::num(0.25), nested: MaterialId(0) },
         Material::Blend { weight: super::num(0.5), a: MaterialId(1), b: MaterialId(0) },
+        Material::Null,
         Material::Blend { weight: super::num(0.5), a: MaterialId(1), b: MaterialId(3) },
     ];
-    let base = [&base[..3], &[Material::Null, base[3].clone()]].concat();
     let (materials, _) = prepare(base, vec![], SurfaceModel::Physical);
     let at = flat_point().lookup();
     let opacities: Vec<f32> = (0..5).map(|i| materials.opacity(MaterialId(i), &at)).collect();

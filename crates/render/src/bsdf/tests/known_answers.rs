@@ -9,7 +9,10 @@ use photinus_scene::{Material, MaterialId, MicrofacetModel};
 const RADIANCE: TransportMode = TransportMode::Radiance;
 const IMPORTANCE: TransportMode = TransportMode::Importance;
 
-fn children(bsdf: &Bsdf, mode: TransportMode) -> (Option<(Vec3, Vec3)>, Option<(Vec3, Vec3)>) {
+/// Direction and weight of a child, where there is one.
+type Child = Option<(Vec3, Vec3)>;
+
+fn children(bsdf: &Bsdf, mode: TransportMode) -> (Child, Child) {
     let find =
         |transmission| bsdf.delta_children(mode).find(|c| c.is_transmission == transmission).map(|c| (c.wi, c.weight));
     (find(false), find(true))

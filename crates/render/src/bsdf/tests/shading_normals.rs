@@ -23,7 +23,7 @@ fn nothing_leaks_and_nothing_is_nan() {
         let &(ref materials, id) = subject.prepare();
         for k in 0..250u64 {
             let mut s = sampler(t as u32, k);
-            let mut pick = |u: [f32; 2]| {
+            let pick = |u: [f32; 2]| {
                 if u[0] < 0.3 { odd[(u[1] * odd.len() as f32) as usize] } else { sphere([(u[0] - 0.3) / 0.7, u[1]]) }
             };
             let (ng, ns, wo, wi) = (pick(s.next_2d()), pick(s.next_2d()), pick(s.next_2d()), pick(s.next_2d()));
