@@ -29,3 +29,8 @@ pub use photinus_scene::{LoadOptions, Scene};
 pub use source::open;
 pub use tree::{Tree, TreeOptions, TreeReport, build_tree};
 pub use tree_drawing::{Ink, Line, TreeDrawing, TreeView, draw_kd_tree};
+
+/// The README's examples are compiled as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -157,12 +157,12 @@ impl Lights {
         self.environment.as_ref().map_or(Vec3::ZERO, |(e, _)| e.radiance(dir))
     }
 
-    /// Density with which [`Lights::sample`] chooses the direction `dir` to infinity.
+    /// Density with which `sample` chooses the direction `dir` to infinity.
     pub fn environment_pdf(&self, dir: Vec3) -> f32 {
         self.environment.as_ref().map_or(0.0, |(e, i)| self.table.probability(*i) * e.pdf(dir))
     }
 
-    /// Density with which [`Lights::sample`] at `from` chooses the point `at` on an emitting shape, over solid angle.
+    /// Density with which `sample` at `from` chooses the point `at` on an emitting shape, over solid angle.
     pub(crate) fn area_pdf(&self, world: &World, from: Vec3, at: &SurfacePoint) -> f32 {
         let first = self.first_emitter[at.shape as usize];
         if first == u32::MAX {
