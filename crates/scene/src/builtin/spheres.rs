@@ -39,5 +39,5 @@ pub fn spheres() -> Scene {
         let material = stage.diffuse(name, linear(color));
         stage.sphere(name, material, resting(90.0 + 360.0 / 7.0 * k, 12.0 + 1.6 * (k % 2.0), radius), radius);
     }
-    stage.finish(camera([0.0, -13.5, 21.0], [0.0, -27.0, 0.0], 38.0), film(512, 512), None)
+    stage.finish(camera([0.0, -13.5, 21.0], [0.0, -27.2, 0.0], 42.0), film(512, 512), None)
 }

@@ -275,3 +275,13 @@ fn triangles_are_spread_over_many_shapes() {
         }
     }
 }
+
+/// The table of the documentation is the list.
+#[test]
+fn documentation_lists_every_scene() {
+    let page = include_str!("../../../../docs/builtin-scenes.md");
+    let rows: Vec<String> =
+        list().iter().map(|b| format!("| `{}` | {} | {} |", b.name, b.triangles, b.description)).collect();
+    let printed: Vec<&str> = page.lines().filter(|l| l.starts_with("| `")).collect();
+    assert_eq!(printed, rows);
+}

@@ -12,7 +12,7 @@ pub fn pyramids() -> Scene {
     let mut stage = Stage::default();
     let floor =
         stage.printed("chequers", [8.0, 8.0], Finish::Matte, || bitmap::checker(1, 8, hex(0xE8E2D4), hex(0x6E7F86)));
-    stage.mesh("floor", floor, sheet(60.0));
+    stage.mesh("floor", floor, sheet(60.0, 11.5));
     let bricks = stage.printed("bricks", [3.0, 3.0], Finish::Matte, || bitmap::brick(2, hex(0xC06A45), hex(0xCFC6B6)));
     stage.mesh("brick-pyramid", bricks, pyramid(5.0, 4.6).placed(Place::at(-1.6, 0.0, -0.8).yaw(28.0)));
     let marble = stage.printed("marble", [3.0, 3.0], Finish::Matte, || bitmap::marble(3, hex(0xEDEBE6), hex(0x3F5A63)));
@@ -26,7 +26,7 @@ pub fn vases() -> Scene {
     let mut stage = Stage::default();
     let floor =
         stage.printed("chequers", [8.0, 8.0], Finish::Matte, || bitmap::checker(1, 4, hex(0xD9CDB8), hex(0x9C5B45)));
-    stage.mesh("floor", floor, sheet(120.0));
+    stage.mesh("floor", floor, sheet(120.0, 7.6));
     let stone =
         stage.printed("marble", [12.0, 12.0], Finish::Satin(0.2), || bitmap::marble(4, hex(0xE9E6E0), hex(0x6A6F78)));
     stage.mesh("plinth", stone, standing([18.0, 3.0, 10.0], 0.4));
@@ -65,7 +65,7 @@ pub fn tea_table() -> Scene {
     let mut stage = Stage::default();
     let floor =
         stage.printed("boards", [48.0, 48.0], Finish::Satin(0.3), || bitmap::planks(8, hex(0xB88A5A), hex(0x80552F)));
-    stage.mesh("floor", floor, sheet(1600.0));
+    stage.mesh("floor", floor, sheet(1600.0, 13.5));
     let cloth =
         stage.printed("cloth", [0.125, 0.25], Finish::Matte, || bitmap::checker(9, 4, hex(0xF0ECE2), hex(0x5F86A3)));
     stage.mesh("cloth", cloth, table_cloth(15.0, 20.0, 7.5));
@@ -93,13 +93,14 @@ pub fn tea_table() -> Scene {
     stage.finish(camera([10.5, 38.0, 43.0], [0.2, 20.6, 0.0], 43.0), film(512, 512), None)
 }
 
-/// A square of this side on the ground, with texture coordinates in scene units.
-fn sheet(side: f32) -> Part {
+/// A square of this side on the ground, turned so that its far edge is a level horizon for a camera that looks in from
+/// that many degrees to the right; texture coordinates are in scene units.
+fn sheet(side: f32, turn: f32) -> Part {
     let h = 0.5 * side;
     let corners = [[-h, h], [h, h], [h, -h], [-h, -h]];
     let mut part = Part::default();
     part.quad(corners.map(|[x, z]| Vec3::new(x, 0.0, z)), corners.map(|[x, z]| [x, -z]));
-    part
+    part.placed(Place::HERE.yaw(turn))
 }
 
 /// The four sides of a square pyramid on the ground, with texture coordinates in scene units on every side.

@@ -226,8 +226,7 @@ fn reeds(stage: &mut Stage, detail: &Detail) {
             droop: dice.between(20.0, 75.0),
             fold: 0.0,
         };
-        let around =
-            Place::at(-22.5, -4.0, -12.0).yaw(dice.between(0.0, 360.0)).shift(0.0, 0.0, dice.between(0.3, 4.5));
+        let around = Place::at(-24.0, -4.0, -9.0).yaw(dice.between(0.0, 360.0)).shift(0.0, 0.0, dice.between(0.3, 4.5));
         clump.add(blade(shape, triangles).placed(around.pitch(-dice.between(72.0, 88.0))));
     }
     stage.mesh("reeds", green, clump);

@@ -13,7 +13,7 @@ pub fn add(stage: &mut Stage, target: usize) {
     bookshelf(stage);
     walls_and_window(stage);
     daylight(stage);
-    lamps::ceiling_lamp(stage, Place::at(-8.0, CEILING, -20.0), 11.0, 130.0);
+    lamps::ceiling_lamp(stage, Place::at(-8.0, CEILING, -20.0), 11.0, 140.0);
     lamps::floor_lamp(stage, Place::at(36.0, FLOOR, -77.0), 110.0);
 
     let terracotta = stage.paint("terracotta", 0xB0653F, Finish::Matte);
@@ -139,9 +139,9 @@ fn walls_and_window(stage: &mut Stage) {
 fn daylight(stage: &mut Stage) {
     let black = stage.paint("bulb", 0x000000, Finish::Matte);
     let x = -HALF_WIDTH - 30.0;
-    let (z, y) = ([WINDOW_Z[0] - 74.0, WINDOW_Z[1] + 22.0], [8.0, 101.0]);
+    let (z, y) = ([WINDOW_Z[0] - 48.0, WINDOW_Z[1] + 6.0], [16.0, 98.0]);
     let mut sky = Part::default();
     let corners = [[z[1], y[0]], [z[0], y[0]], [z[0], y[1]], [z[1], y[1]]].map(|[z, y]| Vec3::new(x, y, z));
     sky.quad(corners, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
-    stage.lamp("sky", black, sky, [5.0, 5.7, 6.6]);
+    stage.lamp("sky", black, sky, [4.0, 4.5, 5.2]);
 }

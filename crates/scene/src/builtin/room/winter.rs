@@ -38,7 +38,7 @@ pub fn add(stage: &mut Stage, target: usize) {
 /// A small round table with a game of chess, and two stools.
 fn chess_corner(stage: &mut Stage) {
     let walnut = stage.walnut();
-    let table = Place::at(14.0, FLOOR, 22.0).yaw(24.0);
+    let table = Place::at(16.0, FLOOR, 18.0).yaw(78.0);
     tables::round_table(stage, table, walnut, 10.0, 21.0);
     objects::chess(stage, table.shift(0.0, 21.0, 0.0), 12.0);
     let teal =
