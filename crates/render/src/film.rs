@@ -203,10 +203,9 @@ impl Film {
         mean
     }
 
-    /// Bytes held at once by the end of pass number `passes` for `values` numbers, the pass in flight included.
-    pub fn predicted_bytes(values: usize, passes: u32) -> usize {
-        let levels = 32 - passes.max(1).leading_zeros() as usize;
-        values * 4 * (levels + 1)
+    /// Buffers that hold the sums of `passes` passes at most.
+    pub fn levels(passes: u32) -> u64 {
+        u64::from(32 - passes.max(1).leading_zeros())
     }
 }
 
