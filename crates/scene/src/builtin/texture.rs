@@ -18,7 +18,7 @@ pub fn pyramids() -> Scene {
     let marble = stage.printed("marble", [3.0, 3.0], Finish::Matte, || bitmap::marble(3, hex(0xEDEBE6), hex(0x3F5A63)));
     stage.mesh("marble-pyramid", marble, pyramid(2.6, 2.4).placed(Place::at(2.9, 0.0, 2.0).yaw(-20.0)));
     daylight(&mut stage, [7.0, 11.0, 5.0], 1.6, 26.0);
-    stage.finish(camera([2.5, 6.2, 12.0], [0.1, 1.2, 0.2], 39.0), film(512, 512), None)
+    stage.finish(camera([2.5, 6.2, 12.0], [0.3, 1.2, 0.2], 41.0), film(512, 512), None)
 }
 
 /// Vases on a marble plinth, one with a sprig of leaves.
@@ -90,7 +90,7 @@ pub fn tea_table() -> Scene {
     let missing = stage.missing_to(7590);
     plants::sprig(&mut stage, mouth, 9, 6.5, missing);
     daylight(&mut stage, [34.0, 62.0, 40.0], 8.0, 30.0);
-    stage.finish(camera([10.5, 38.0, 43.0], [0.2, 20.6, 0.0], 43.0), film(512, 512), None)
+    stage.finish(camera([10.5, 38.0, 43.0], [0.2, 20.0, 0.0], 45.0), film(512, 512), None)
 }
 
 /// A square of this side on the ground, turned so that its far edge is a level horizon for a camera that looks in from
