@@ -23,13 +23,14 @@ fn send(child: &Child, signal: Signal) {
     kill_process(pid, signal).unwrap();
 }
 
-/// Waits until the program says that it has finished a first pass; returns the reader, which must stay open.
-fn first_pass(child: &mut Child) -> impl BufRead + use<> {
+/// Waits until the program says that it has finished `phase` for the first time; returns the reader, which must stay
+/// open.
+fn after(child: &mut Child, phase: &str) -> impl BufRead + use<> {
     let mut lines = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();
-    while !line.starts_with("eye pass: ") {
+    while !line.starts_with(phase) {
         line.clear();
-        assert!(lines.read_line(&mut line).unwrap() > 0, "the program ended before its first pass");
+        assert!(lines.read_line(&mut line).unwrap() > 0, "the program ended before its {phase}");
     }
     lines
 }
@@ -43,7 +44,7 @@ fn is_png(path: &Path) -> bool {
 fn an_interrupt_writes_the_image_so_far() {
     let folder = tempfile::tempdir().unwrap();
     let mut child = start(folder.path(), &[LONG, &["--stats", "a.json"]].concat());
-    let mut rest = first_pass(&mut child);
+    let mut rest = after(&mut child, "eye pass: ");
     let begun = Instant::now();
     send(&child, Signal::INT);
     let status = child.wait().unwrap();
@@ -59,6 +60,22 @@ fn an_interrupt_writes_the_image_so_far() {
     let mut said = String::new();
     std::io::Read::read_to_string(&mut rest, &mut said).unwrap();
     assert!(said.contains("interrupted: "), "{said}");
+}
+
+#[test]
+fn an_interrupt_in_the_first_pass_keeps_what_it_has_done() {
+    let folder = tempfile::tempdir().unwrap();
+    // This eye pass alone would take hours.
+    let endless = ["render", "--mode", "path", "--size", "64x64", "--spp", "2000000", "-o", "a.png"];
+    let mut child = start(folder.path(), &endless);
+    let _rest = after(&mut child, "memory: ");
+    std::thread::sleep(Duration::from_millis(300));
+    let begun = Instant::now();
+    send(&child, Signal::INT);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let took = begun.elapsed();
+    assert!(took < Duration::from_secs(3), "{took:?}");
+    assert!(is_png(&folder.path().join("a.png")));
 }
 
 #[test]
@@ -89,7 +106,7 @@ fn a_second_interrupt_ends_the_program_at_once() {
     let folder = tempfile::tempdir().unwrap();
     // One eye pass of this render takes minutes, and its picture is never wanted.
     let mut child = start(folder.path(), &[LONG, &["--spp", "2"]].concat());
-    let _rest = first_pass(&mut child);
+    let _rest = after(&mut child, "eye pass: ");
     send(&child, Signal::INT);
     send(&child, Signal::INT);
     let begun = Instant::now();

@@ -29,11 +29,20 @@ impl EyePass<'_> {
     /// As [`EyePass::run`], by the thesis's recursion.
     pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
         self.run_tiles(film, observer, |x0, y0, w, h, index, tile, counters| {
-            self.direct_tile(maps, [x0, y0, w, h], index, tile, counters);
+            self.direct_tile(maps, [x0, y0, w, h], index, tile, counters, observer)
         })
     }
 
-    fn direct_tile(&self, maps: &Maps, window: [u32; 4], index: u32, tile: &mut Tile, counters: &mut Counters) {
+    /// Returns how many samples it has made.
+    fn direct_tile(
+        &self,
+        maps: &Maps,
+        window: [u32; 4],
+        index: u32,
+        tile: &mut Tile,
+        counters: &mut Counters,
+        observer: &dyn Observer,
+    ) -> u32 {
         let [x0, y0, w, h] = window;
         let instrumented = (index as usize).is_multiple_of(INSTRUMENTED);
         let mut tracer = Tracer::new(self.world, instrumented);
@@ -41,6 +50,9 @@ impl EyePass<'_> {
         let mut scratch = EstimateScratch::default();
         let mut found: Vec<Estimated> = Vec::new();
         for sample in 0..self.spp {
+            if observer.cancelled() {
+                return sample;
+            }
             let mut nodes: Vec<Node> = self
                 .camera_paths(x0, y0, w, h, sample, tile)
                 .into_iter()
@@ -121,6 +133,7 @@ impl EyePass<'_> {
                 nodes = next;
             }
         }
+        self.spp
     }
 
     fn node_sampler(&self, node: &Node, x0: u32, y0: u32, w: u32, sample: u32) -> Sampler {

@@ -144,26 +144,31 @@ impl Tile<'_> {
 
 impl EyePass<'_> {
     /// Renders one pass into `film` (channels of each pixel of the window, row by row), means over the samples of
-    /// the pass. Where it is stopped, finished tiles are there.
+    /// the pass. Where it is stopped, tiles that have any sample are there, as means over those.
     pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
         self.run_tiles(film, observer, |x0, y0, w, h, index, tile, counters| {
             let instrumented = (index as usize).is_multiple_of(INSTRUMENTED);
             let mut tracer = Tracer::new(self.world, instrumented);
             for sample in 0..self.spp {
+                if observer.cancelled() {
+                    return sample;
+                }
                 let paths = self.camera_paths(x0, y0, w, h, sample, tile);
                 counters.rays.camera += paths.len() as u64;
                 let estimates = self.follow(paths, tile, &mut tracer, counters);
                 self.gather(&estimates, instrumented, tile, counters);
             }
+            self.spp
         })
     }
 
-    /// Renders all tiles by `render(x0, y0, width, height, index, tile, counters)` and puts them into `film`.
+    /// Renders all tiles by `render(x0, y0, width, height, index, tile, counters)`, which returns how many samples it has
+    /// made, fewer than asked for only where it is stopped; puts them into `film`.
     pub(crate) fn run_tiles(
         &self,
         film: &mut [f32],
         observer: &dyn Observer,
-        render: impl Fn(u32, u32, u32, u32, u32, &mut Tile, &mut Counters) + Sync,
+        render: impl Fn(u32, u32, u32, u32, u32, &mut Tile, &mut Counters) -> u32 + Sync,
     ) -> Result<Counters, Cancelled> {
         let [_, _, width, height] = self.crop;
         let (across, down) = (width.div_ceil(TILE), height.div_ceil(TILE));
@@ -173,7 +178,7 @@ impl EyePass<'_> {
             let (x0, y0) = (tile % across * TILE, tile / across * TILE);
             (x0, y0, TILE.min(width - x0), TILE.min(height - y0))
         };
-        let results: Vec<Option<(Vec<f32>, Counters)>> = (0..tiles)
+        let results: Vec<Option<(Vec<f32>, Counters, u32)>> = (0..tiles)
             .into_par_iter()
             .map(|index| {
                 if observer.cancelled() {
@@ -187,20 +192,24 @@ impl EyePass<'_> {
                     layout: self.layout,
                 };
                 let mut counters = Counters::default();
-                render(x0, y0, w, h, index, &mut tile, &mut counters);
-                self.finish(&mut tile);
+                let samples = render(x0, y0, w, h, index, &mut tile, &mut counters);
+                if samples == 0 {
+                    return None;
+                }
+                self.finish(&mut tile, samples);
                 observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(tiles));
-                Some((tile.out, counters))
+                Some((tile.out, counters, samples))
             })
             .collect();
         let mut counters = Counters::default();
         let channels = self.layout.channels();
         let mut complete = true;
         for (index, result) in results.into_iter().enumerate() {
-            let Some((pixels, c)) = result else {
+            let Some((pixels, c, samples)) = result else {
                 complete = false;
                 continue;
             };
+            complete &= samples == self.spp;
             counters += c;
             let (x0, y0, w, h) = place(index as u32);
             let row = w as usize * channels;
@@ -504,8 +513,8 @@ impl EyePass<'_> {
     }
 
     /// Means over the samples, and values of a pass that are no means.
-    fn finish(&self, tile: &mut Tile) {
-        let scale = 1.0 / self.spp as f32;
+    fn finish(&self, tile: &mut Tile, samples: u32) {
+        let scale = 1.0 / samples as f32;
         for pixel in tile.out.chunks_exact_mut(self.layout.channels()) {
             let ids = [Aov::ObjectId, Aov::MaterialId]
                 .map(|aov| self.layout.offset(aov).map(|offset| (offset, pixel[offset])));

@@ -223,14 +223,38 @@ impl Watcher for Monitor {
     fn pass_done(&self, state: &PassState<'_>) {
         self.progress.pass_done(state.passes, state.error, state.last);
         let mut saved = self.saved.lock().unwrap_or_else(PoisonError::into_inner);
-        // Another pass of this length must not make the picture older than allowed.
-        let due = saved.elapsed() + Duration::from_secs_f64(state.pass_secs) >= AUTOSAVE;
-        if due && !state.last {
+        if !state.last && is_due(saved.elapsed(), Duration::from_secs_f64(state.pass_secs)) {
             // The last write reports the same trouble as an error; until then the render goes on.
             if let Err(error) = self.target.save(&state.picture()) {
                 self.progress.line(&format!("photinus: warning: {error}"));
             }
             *saved = Instant::now();
         }
+    }
+}
+
+/// Whether a picture written `age` ago is to be written again now: another pass must not make it older than allowed.
+fn is_due(age: Duration, pass: Duration) -> bool {
+    age + pass >= AUTOSAVE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_never_older_than_allowed_while_passes_are_shorter() {
+        for pass_ms in [1u64, 900, 7_000, 16_000, 29_000] {
+            let pass = Duration::from_millis(pass_ms);
+            let mut age = Duration::ZERO;
+            for _ in 0..100_000 / pass_ms + 100 {
+                age += pass;
+                assert!(age <= AUTOSAVE, "passes of {pass_ms} ms: {age:?}");
+                if is_due(age, pass) {
+                    age = Duration::ZERO;
+                }
+            }
+        }
+        assert!(!is_due(Duration::from_secs(1), Duration::from_secs(1)), "no more often than needed");
     }
 }
