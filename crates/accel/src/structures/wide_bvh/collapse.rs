@@ -87,7 +87,7 @@ impl Collapse<'_> {
         }
         let is_triangle = |id: u32| (id as usize) < self.primitives.triangle_count();
         if self.leaves == Leaves::Ids || prims.iter().all(|p| !is_triangle(p.id)) {
-            (prims.len() <= super::layout::MAX_LEAF).then_some(Leaves::Ids)
+            (prims.len() <= super::layout::MAX_IDS).then_some(Leaves::Ids)
         } else {
             prims.iter().all(|p| is_triangle(p.id)).then_some(Leaves::Blocks)
         }
@@ -216,6 +216,6 @@ impl Collapse<'_> {
             block.ids[lane] = id;
         }
         self.out.blocks.push(block);
-        Child::blocks(self.out.blocks.len() - 1, 1)
+        Child::block(self.out.blocks.len() - 1)
     }
 }

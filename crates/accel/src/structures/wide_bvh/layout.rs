@@ -5,7 +5,7 @@ use photinus_geometry::Aabb;
 /// Children of a node and triangles of a block.
 pub const WIDTH: usize = 8;
 
-/// What a child is: two bits of kind, and an index. A leaf holds its length less one in bits 28 and 29.
+/// What a child is: two bits of kind, and an index. A leaf of ids holds its length less one in bits 28 and 29.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Child(pub u32);
@@ -14,13 +14,13 @@ pub struct Child(pub u32);
 pub const NODE: usize = 0;
 /// The end of the walk, at the bottom of every stack; no child of any node.
 pub const END: usize = 1;
-/// A leaf of triangle blocks.
-pub const BLOCKS: usize = 2;
-/// A leaf of primitive ids.
+/// A leaf: a triangle block.
+pub const BLOCK: usize = 2;
+/// A leaf: some primitive ids.
 pub const IDS: usize = 3;
 
-/// Longest leaf, in blocks or in ids.
-pub const MAX_LEAF: usize = 4;
+/// Most ids in a leaf.
+pub const MAX_IDS: usize = 4;
 
 /// Indices of children are below this.
 pub const MAX_INDEX: usize = 1 << 28;
@@ -32,42 +32,39 @@ impl Child {
     const KIND_SHIFT: u32 = 30;
     const LENGTH_SHIFT: u32 = 28;
 
-    fn leaf(kind: usize, first: usize, length: usize) -> Self {
-        debug_assert!(first + length <= MAX_INDEX && (1..=MAX_LEAF).contains(&length));
-        Self((kind as u32) << Self::KIND_SHIFT | ((length - 1) as u32) << Self::LENGTH_SHIFT | first as u32)
-    }
-
     /// The node of index `index`.
-    pub fn node(index: usize) -> Self {
+    pub const fn node(index: usize) -> Self {
         debug_assert!(index < MAX_INDEX);
         Self(index as u32)
     }
 
-    /// The `length` triangle blocks from `first`.
-    pub fn blocks(first: usize, length: usize) -> Self {
-        Self::leaf(BLOCKS, first, length)
+    /// The triangle block of index `index`.
+    pub const fn block(index: usize) -> Self {
+        debug_assert!(index < MAX_INDEX);
+        Self((BLOCK as u32) << Self::KIND_SHIFT | index as u32)
     }
 
     /// The `length` primitive ids from `first`.
     pub fn ids(first: usize, length: usize) -> Self {
-        Self::leaf(IDS, first, length)
+        debug_assert!(first + length <= MAX_INDEX && (1..=MAX_IDS).contains(&length));
+        Self((IDS as u32) << Self::KIND_SHIFT | ((length - 1) as u32) << Self::LENGTH_SHIFT | first as u32)
     }
 
-    /// [`NODE`], [`END`], [`BLOCKS`] or [`IDS`].
+    /// [`NODE`], [`END`], [`BLOCK`] or [`IDS`].
     #[inline(always)]
     pub fn kind(self) -> usize {
         (self.0 >> Self::KIND_SHIFT) as usize
     }
 
-    /// Index of the node, or of the first block or id.
+    /// Index of the node or block, or of the first id.
     #[inline(always)]
     pub fn index(self) -> usize {
         self.0 as usize & (MAX_INDEX - 1)
     }
 
-    /// Blocks or ids of a leaf.
+    /// Places of the ids of a leaf.
     #[inline(always)]
-    pub fn range(self) -> std::ops::Range<usize> {
+    pub fn ids_range(self) -> std::ops::Range<usize> {
         let first = self.index();
         first..first + 1 + (self.0 >> Self::LENGTH_SHIFT & 3) as usize
     }
@@ -92,7 +89,7 @@ impl Node {
     /// A node without children.
     pub fn empty() -> Self {
         let (low, high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
-        Self { bounds: [low, high, low, high, low, high], children: [Child::blocks(0, 1); WIDTH], orders: [0; 8] }
+        Self { bounds: [low, high, low, high, low, high], children: [Child::block(0); WIDTH], orders: [0; 8] }
     }
 
     /// The node of these children, at most [`WIDTH`].

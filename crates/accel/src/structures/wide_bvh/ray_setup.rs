@@ -44,43 +44,35 @@ impl RaySetup {
         t_min: 0.0,
     };
 
-    /// Prepares `ray` for a tree of these bounds; `None` where it can hit nothing.
+    /// Prepares `ray` for a tree of these bounds; false where it can hit nothing.
     ///
     /// An axis along which the ray does not move gets an infinite reciprocal: entry and exit parameters are infinite
     /// with the right signs, or not a number where the ray runs in a face of the box, and kernels leave such axes out.
     /// An axis along which it moves too slowly for a reciprocal gets NaN and is left out always.
-    #[inline]
-    pub fn new(ray: &Ray, tree_bounds: &Aabb) -> Option<Self> {
-        if !(ray.t_min <= ray.t_max) {
-            return None;
-        }
-        let woop = <Woop as RtiMethod<f32>>::start(ray.origin.to_array(), ray.dir.to_array())?;
-        let mut setup = Self {
-            woop,
-            near: [0; 3],
-            far: [0; 3],
-            octant: 0,
-            near_origin: woop.origin,
-            far_origin: woop.origin,
-            near_inv: [0.0; 3],
-            far_inv: [0.0; 3],
-            t_min: ray.t_min,
-        };
+    #[inline(always)]
+    pub fn set(&mut self, ray: &Ray, tree_bounds: &Aabb) -> bool {
+        let woop = <Woop as RtiMethod<f32>>::start(ray.origin.to_array(), ray.dir.to_array());
+        let (Some(woop), true) = (woop, ray.t_min <= ray.t_max) else { return false };
+        self.woop = woop;
+        self.near_origin = woop.origin;
+        self.far_origin = woop.origin;
+        self.t_min = ray.t_min;
+        self.octant = 0;
         for axis in 0..3 {
             let d = ray.dir[axis];
             let inv = 1.0 / d;
             let inv = if inv.is_infinite() && d != 0.0 { f32::NAN } else { inv };
             let backward = u32::from(inv < 0.0);
-            setup.near[axis] = (2 * axis as u32 + backward) * WIDTH as u32;
-            setup.far[axis] = (2 * axis as u32 + 1 - backward) * WIDTH as u32;
-            setup.octant |= (backward as usize) << axis;
-            setup.near_inv[axis] = inv * (1.0 - SLAB_SLACK);
-            setup.far_inv[axis] = inv * (1.0 + SLAB_SLACK);
+            self.near[axis] = (2 * axis as u32 + backward) * WIDTH as u32;
+            self.far[axis] = (2 * axis as u32 + 1 - backward) * WIDTH as u32;
+            self.octant |= (backward as usize) << axis;
+            self.near_inv[axis] = inv * (1.0 - SLAB_SLACK);
+            self.far_inv[axis] = inv * (1.0 + SLAB_SLACK);
         }
         if ray.t_min < 0.0 {
-            setup.widen_for_negative_parameters(tree_bounds);
+            self.widen_for_negative_parameters(tree_bounds);
         }
-        Some(setup)
+        true
     }
 
     /// The reciprocals' slack narrows slabs where parameters are negative: behind the origin the slack is taken from

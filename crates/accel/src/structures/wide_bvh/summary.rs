@@ -1,7 +1,7 @@
 //! A finished tree, described by walking it.
 
 use super::binary::scaled_half_area;
-use super::layout::{BLOCKS, Child, NODE};
+use super::layout::{BLOCK, Child, NODE};
 use super::{NAME, WideBvh};
 use crate::structure::StructureSummary;
 #[cfg(test)]
@@ -28,15 +28,15 @@ pub fn summary(tree: &WideBvh) -> StructureSummary {
                 let node = &tree.nodes[child.index()];
                 waiting.extend((0..node.len()).map(|slot| (node.children[slot], node.child_bounds(slot))));
             }
-            BLOCKS => {
+            BLOCK => {
                 out.leaves += 1;
-                out.sah_cost += share * child.range().len() as f64;
-                out.references += tree.blocks[child.range()].iter().map(|b| b.len() as u64).sum::<u64>();
+                out.sah_cost += share;
+                out.references += tree.blocks[child.index()].len() as u64;
             }
             _ => {
                 out.leaves += 1;
-                out.sah_cost += share * child.range().len() as f64;
-                out.references += child.range().len() as u64;
+                out.sah_cost += share * child.ids_range().len() as f64;
+                out.references += child.ids_range().len() as u64;
             }
         }
     }
@@ -59,12 +59,11 @@ impl WideBvh {
                         waiting.push((node.children[slot], node.child_bounds(slot)));
                     }
                 }
-                BLOCKS => {
-                    for block in &self.blocks[child.range()] {
-                        for (lane, row) in (0..block.len()).flat_map(|l| (0..9).map(move |row| (l, row))) {
-                            let x = block.vertices[row][lane];
-                            assert!(bounds.min[row % 3] < x && x < bounds.max[row % 3]);
-                        }
+                BLOCK => {
+                    let block = &self.blocks[child.index()];
+                    for (lane, row) in (0..block.len()).flat_map(|l| (0..9).map(move |row| (l, row))) {
+                        let x = block.vertices[row][lane];
+                        assert!(bounds.min[row % 3] < x && x < bounds.max[row % 3]);
                     }
                 }
                 _ => {}

@@ -10,7 +10,7 @@
 
 use super::WideBvh;
 use super::kernels::{Kernel, Lanes, Reach};
-use super::layout::{BLOCKS, Child, END, IDS, NODE, Node, TriangleBlock, WIDTH};
+use super::layout::{BLOCK, Child, END, IDS, NODE, Node, TriangleBlock, WIDTH};
 use super::ray_setup::RaySetup;
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
@@ -18,7 +18,10 @@ use photinus_intersect::LeafWork;
 use photinus_intersect::methods::woop::{self, Started};
 
 /// Rays under way at a time.
-const SLOTS: usize = 16;
+const SLOTS: usize = 32;
+
+/// Triangles that may wait to be finished.
+const CANDIDATES: usize = SLOTS * WIDTH;
 
 /// Places that a stack needs in a tree with so many levels of nodes: for the end, for all but one of the children of
 /// every node on the way, and for a whole node to be written.
@@ -65,7 +68,8 @@ impl Stacks {
         }
     }
 
-    /// Takes children beyond `t_max` out of a slot's stack and returns how many places are left filled.
+    /// Takes children beyond `t_max` out of a slot's stack and returns how many places are left filled. One by one: the
+    /// places were written eight at a time and across one another, and reading so many at once would wait for that.
     #[inline(always)]
     fn shorten(&mut self, slot: u8, waiting: usize, t_max: f32) -> usize {
         let start = usize::from(slot) * self.places;
@@ -112,6 +116,8 @@ struct Walk<'a, K: Kernel, F> {
     /// Where the children of each kind lie, and how many bytes apart.
     places: [(*const u8, usize); 4],
     states: States,
+    /// Triangles that passed the filter, by slot and lane.
+    candidates: [(u8, u8); CANDIDATES],
     set: F,
 }
 
@@ -135,7 +141,8 @@ impl WideBvh {
         let places = [nodes, nodes, blocks, ids];
         let stacks = Stacks::new(self.stack_places, SLOTS.min(rays.len()));
         let slots = [IDLE; SLOTS];
-        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, places, states, set };
+        let candidates = [(0, 0); CANDIDATES];
+        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, places, states, candidates, set };
         walk.start();
         while walk.states.lens != [0; 4] {
             walk.visit_nodes::<COUNT>(counters);
@@ -157,32 +164,26 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         }
     }
 
-    /// Starts the next ray of the batch in a slot, if one is left.
+    /// Starts the next ray of the batch that can hit anything in a slot, if one is left; misses are handed out on the
+    /// way.
     #[inline(always)]
     fn fill(&mut self, index: u8) {
-        let Some((ray, setup)) = self.next_ray() else { return };
-        let slot = &mut self.slots[usize::from(index) % SLOTS];
-        slot.setup = setup;
-        slot.t_max = self.rays[ray].t_max;
-        slot.best = Hit::MISS;
-        slot.child = Child::node(0);
-        slot.ray = ray;
-        slot.waiting = 1;
-        self.states.push(NODE, index);
-    }
-
-    /// The next ray of the batch that can hit anything; misses are handed out on the way.
-    #[inline(always)]
-    fn next_ray(&mut self) -> Option<(usize, RaySetup)> {
         while self.next < self.rays.len() {
             let i = self.next;
             self.next += 1;
-            match RaySetup::new(&self.rays[i], &self.tree.bounds) {
-                Some(setup) => return Some((i, setup)),
-                None => (self.set)(i, Hit::MISS),
+            let slot = &mut self.slots[usize::from(index) % SLOTS];
+            let ray = &self.rays[i];
+            if slot.setup.set(ray, &self.tree.bounds) {
+                slot.t_max = ray.t_max;
+                slot.best = Hit::MISS;
+                slot.child = Child::node(0);
+                slot.ray = i;
+                slot.waiting = 1;
+                self.states.push(NODE, index);
+                return;
             }
+            (self.set)(i, Hit::MISS);
         }
-        None
     }
 
     /// Takes the next of `waiting` children from a slot's stack.
@@ -194,7 +195,7 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         slot.child = child;
         let kind = child.kind();
         let (start, size) = self.places[kind];
-        self.kernel.prefetch(start.wrapping_add(child.index() * size), 5);
+        self.kernel.prefetch(start.wrapping_add(child.index() * size));
         self.states.push(kind, index);
     }
 
@@ -214,31 +215,32 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         }
     }
 
+    /// Filters the triangles of all leaves first, then finishes those that are left, then takes up the rays again:
+    /// what a test says is not known for long, and should not be waited for.
     #[inline(always)]
     fn visit_blocks<const ANY: bool, const COUNT: bool>(&mut self, counters: &mut RayCounters) {
-        let (indices, len) = self.states.take(BLOCKS);
+        let (indices, len) = self.states.take(BLOCK);
         for &index in &indices[..len] {
             let slot = &mut self.slots[usize::from(index) % SLOTS];
-            let mut work = LeafWork::default();
-            for block in &self.tree.blocks[slot.child.range()] {
-                let reach = Reach::new(slot.setup.woop.dir_z, slot.setup.t_min, slot.t_max);
-                let mut mask = self.kernel.block(&slot.setup, &reach, block);
-                if COUNT {
-                    work.tests += block.len() as u32;
-                }
-                while mask != 0 {
-                    let lane = mask.trailing_zeros() as usize;
-                    mask &= mask - 1;
-                    if let Some(hit) = lane_hit(&slot.setup.woop, block, lane, slot.setup.t_min, slot.t_max) {
-                        work.hits += 1;
-                        if hit.beats(&slot.best) {
-                            slot.best = hit;
-                            slot.t_max = hit.t;
-                        }
+            let block = &self.tree.blocks[slot.child.index()];
+            let reach = Reach::new(slot.setup.woop.dir_z, slot.setup.t_min, slot.t_max);
+            let mut mask = self.kernel.block(&slot.setup, &reach, block);
+            let mut hits = 0;
+            while mask != 0 {
+                let lane = mask.trailing_zeros() as usize;
+                mask &= mask - 1;
+                if let Some(hit) = lane_hit(&slot.setup.woop, block, lane, slot.setup.t_min, slot.t_max) {
+                    hits += 1;
+                    if hit.beats(&slot.best) {
+                        slot.best = hit;
+                        slot.t_max = hit.t;
                     }
                 }
             }
-            self.leave_leaf::<ANY, COUNT>(index, work, counters);
+            if COUNT {
+                counters.add_leaf(block.len(), LeafWork { tests: block.len() as u32, hits });
+            }
+            self.leave_leaf::<ANY>(index, hits > 0);
         }
     }
 
@@ -247,28 +249,23 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         let (indices, len) = self.states.take(IDS);
         for &index in &indices[..len] {
             let slot = &mut self.slots[usize::from(index) % SLOTS];
-            let ids = &self.tree.ids[slot.child.range()];
+            let ids = &self.tree.ids[slot.child.ids_range()];
             let work = self.tree.tester.closest_hit(&self.rays[slot.ray], ids, &mut slot.best);
             slot.t_max = slot.t_max.min(slot.best.t);
-            self.leave_leaf::<ANY, COUNT>(index, work, counters);
+            if COUNT {
+                counters.add_leaf(ids.len(), work);
+            }
+            self.leave_leaf::<ANY>(index, work.hits > 0);
         }
     }
 
     #[inline(always)]
-    fn leave_leaf<const ANY: bool, const COUNT: bool>(
-        &mut self,
-        index: u8,
-        work: LeafWork,
-        counters: &mut RayCounters,
-    ) {
-        if COUNT {
-            counters.add_leaf(work.tests as usize, work);
+    fn leave_leaf<const ANY: bool>(&mut self, index: u8, hit: bool) {
+        let slot = &self.slots[usize::from(index) % SLOTS];
+        let mut waiting = slot.waiting;
+        if hit {
+            waiting = if ANY { 1 } else { self.stacks.shorten(index, waiting, slot.t_max) };
         }
-        let slot = &mut self.slots[usize::from(index) % SLOTS];
-        if work.hits > 0 {
-            slot.waiting = if ANY { 1 } else { self.stacks.shorten(index, slot.waiting, slot.t_max) };
-        }
-        let waiting = slot.waiting;
         self.pop(index, waiting);
     }
 

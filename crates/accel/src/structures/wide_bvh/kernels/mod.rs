@@ -23,8 +23,8 @@ pub trait Kernel: Copy {
     /// Triangles of `block` that the ray may hit within its reach, as a mask of lanes.
     fn block(self, ray: &RaySetup, reach: &Reach, block: &TriangleBlock) -> u32;
 
-    /// Asks for the first `lines` cache lines of `what` to be near soon.
-    fn prefetch<T>(self, what: *const T, lines: usize);
+    /// Asks for the five cache lines from `start`, a node or a block, to be near soon.
+    fn prefetch(self, start: *const u8);
 }
 
 /// Eight places of a stack: where the ray enters, and what.

@@ -73,5 +73,5 @@ impl Kernel for Scalar {
     }
 
     #[inline(always)]
-    fn prefetch<T>(self, _what: *const T, _lines: usize) {}
+    fn prefetch(self, _start: *const u8) {}
 }
