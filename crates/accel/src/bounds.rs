@@ -15,13 +15,13 @@ use photinus_intersect::is_degenerate;
 pub const SLAB_SLACK: f32 = 1.0 / (1 << 20) as f32;
 
 /// Grows `b` by 16 roundings of its extents (6 are needed) and by one unit in the last place outward, which also
-/// keeps flat boxes from being empty.
+/// keeps flat boxes from being empty. The result is finite where `b` is.
 pub fn pad(b: Aabb) -> Aabb {
     let size = b.max - b.min;
     let pad = Vec3::splat((size.x + size.y + size.z) * SLAB_SLACK);
     let down = |v: Vec3| Vec3::new(v.x.next_down(), v.y.next_down(), v.z.next_down());
     let up = |v: Vec3| Vec3::new(v.x.next_up(), v.y.next_up(), v.z.next_up());
-    Aabb { min: down(b.min - pad), max: up(b.max + pad) }
+    Aabb { min: down(b.min - pad).max(Vec3::MIN), max: up(b.max + pad).min(Vec3::MAX) }
 }
 
 /// Edge lengths of `b` in doubles, which no scene's areas leave; zero for the empty box.

@@ -4,8 +4,9 @@
 use crate::list::leaf_tester;
 use crate::options::{BuildError, BuildOptions};
 use crate::structure::{RayCounters, Structure, StructureSummary};
-use photinus_geometry::{Hit, Primitives, Ray};
-use photinus_intersect::LeafTester;
+use photinus_geometry::{Hit, Primitives, Ray, Vec3};
+use photinus_intersect::{LeafTester, RtiMethod, TriangleHit};
+use photinus_num::Scalar;
 use std::sync::Arc;
 
 /// The name on the command line.
@@ -14,6 +15,32 @@ pub const NAME: &str = "brute-force";
 pub const SUMMARY: &str = "every primitive for every ray; the oracle";
 /// Where it was published.
 pub const SOURCE: &str = "none";
+
+/// The triangles of `primitives`, prepared for a method over any scalar.
+pub fn prepare<S: Scalar, M: RtiMethod<S>>(primitives: &Primitives) -> Vec<M::Prepared> {
+    let scalars = |v: Vec3| v.to_array().map(|x| S::from_f64(f64::from(x)));
+    (0..primitives.triangle_count()).map(|i| M::prepare(primitives.triangle(i).map(scalars))).collect()
+}
+
+/// The nearest triangle that a ray hits, by a method over any scalar, ties going to the lowest id: the oracle for
+/// number systems, and the counterpart of a hardware unit that sees every triangle.
+pub fn closest_triangle<S: Scalar, M: RtiMethod<S>>(
+    triangles: &[M::Prepared],
+    ray: &Ray,
+) -> Option<(u32, TriangleHit<S>)> {
+    let scalar = |x: f32| S::from_f64(f64::from(x));
+    let started = M::start(ray.origin.to_array().map(scalar), ray.dir.to_array().map(scalar))?;
+    let mut best: Option<(u32, TriangleHit<S>)> = None;
+    for (id, triangle) in triangles.iter().enumerate() {
+        let t_max = best.as_ref().map_or(scalar(ray.t_max), |b| b.1.t);
+        if let Some(hit) = M::intersect(&started, triangle, scalar(ray.t_min), t_max)
+            && best.as_ref().is_none_or(|b| hit.t < b.1.t)
+        {
+            best = Some((id as u32, hit));
+        }
+    }
+    best
+}
 
 struct BruteForce {
     ids: Vec<u32>,

@@ -5,36 +5,52 @@
 //! its place beforehand, so the tree is the same on any number of threads.
 
 use crate::bounds::padded_bounds;
-use photinus_geometry::{Aabb, Primitives, Vec3};
+use photinus_geometry::{Aabb, Primitives, Vec4};
 use rayon::prelude::*;
 
-/// Bins per axis in large nodes.
-const BINS: usize = 16;
 /// Subtrees of fewer primitives are built by one thread.
 const PARALLEL_PRIMS: usize = 4096;
 /// Below this depth nodes are halved by count, which takes 30 levels at most: no tree is deeper than 78.
 const MAX_SAH_DEPTH: u32 = 48;
 
-/// A primitive to be placed: its padded bounds and id.
+/// A primitive to be placed.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
 pub struct BuildPrim {
-    /// Lower corner.
-    pub min: Vec3,
+    /// Padded bounds.
+    bounds: WideBox,
     /// Primitive id.
     pub id: u32,
-    /// Upper corner.
-    pub max: Vec3,
-    padding: u32,
 }
 
-impl BuildPrim {
-    fn bounds(&self) -> Aabb {
-        Aabb { min: self.min, max: self.max }
+/// A box in vector registers; the fourth lane is zero.
+#[derive(Clone, Copy, Debug)]
+struct WideBox {
+    min: Vec4,
+    max: Vec4,
+}
+
+impl WideBox {
+    const EMPTY: Self = Self { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY };
+
+    fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    fn centroid(&self) -> Vec3 {
+    fn with_point(self, p: Vec4) -> Self {
+        Self { min: self.min.min(p), max: self.max.max(p) }
+    }
+
+    fn centroid(&self) -> Vec4 {
         self.min * 0.5 + self.max * 0.5
+    }
+
+    /// Half the surface area in scaled units.
+    fn scaled_half_area(&self, scale: f32) -> f32 {
+        scaled_half_area(&self.aabb(), scale)
+    }
+
+    fn aabb(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: self.max.truncate() }
     }
 }
 
@@ -83,7 +99,7 @@ fn gather(primitives: &Primitives) -> Vec<BuildPrim> {
         .with_min_len(1024)
         .filter_map(|id| {
             let b = padded_bounds(primitives, id)?;
-            Some(BuildPrim { min: b.min, id: id as u32, max: b.max, padding: 0 })
+            Some(BuildPrim { bounds: WideBox { min: b.min.extend(0.0), max: b.max.extend(0.0) }, id: id as u32 })
         })
         .collect()
 }
@@ -93,7 +109,7 @@ pub fn build(primitives: &Primitives) -> BinaryTree {
     let mut prims = gather(primitives);
     let leaf = BinaryNode { bounds: Aabb::EMPTY, first: 0, count: 0, left_count: 0 };
     let mut nodes = vec![leaf; (2 * prims.len()).saturating_sub(1)];
-    let size = extents(&prims).0.size().max_element();
+    let size = extents(&prims).0.aabb().size().max_element();
     let scale = if size > 0.0 && size.is_finite() { (1.0 / size).min(f32::MAX) } else { 1.0 };
     if !prims.is_empty() {
         subtree(&mut prims, 0, &mut nodes, 0, scale);
@@ -104,12 +120,15 @@ pub fn build(primitives: &Primitives) -> BinaryTree {
 fn subtree(prims: &mut [BuildPrim], first: u32, nodes: &mut [BinaryNode], depth: u32, scale: f32) {
     let count = prims.len();
     let (bounds, centroids) = extents(prims);
+    let mut node = BinaryNode { bounds: bounds.aabb(), first, count: count as u32, left_count: 0 };
     if count == 1 {
-        nodes[0] = BinaryNode { bounds, first, count: 1, left_count: 0 };
+        nodes[0] = node;
         return;
     }
-    let left_count = if depth < MAX_SAH_DEPTH { split(prims, &centroids, scale) } else { None }.unwrap_or(count / 2);
-    nodes[0] = BinaryNode { bounds, first, count: count as u32, left_count: left_count as u32 };
+    let by_cost = if count > 2 && depth < MAX_SAH_DEPTH { split(prims, &centroids, scale) } else { None };
+    let left_count = by_cost.unwrap_or(count / 2);
+    node.left_count = left_count as u32;
+    nodes[0] = node;
     let (left_prims, right_prims) = prims.split_at_mut(left_count);
     let (left_nodes, right_nodes) = nodes[1..].split_at_mut(2 * left_count - 1);
     let right_first = first + left_count as u32;
@@ -125,66 +144,85 @@ fn subtree(prims: &mut [BuildPrim], first: u32, nodes: &mut [BinaryNode], depth:
 }
 
 /// Bounds of the primitives and of their centroids.
-fn extents(prims: &[BuildPrim]) -> (Aabb, Aabb) {
-    prims.iter().fold((Aabb::EMPTY, Aabb::EMPTY), |(b, c), p| (b.union(p.bounds()), c.with_point(p.centroid())))
+fn extents(prims: &[BuildPrim]) -> (WideBox, WideBox) {
+    let empty = (WideBox::EMPTY, WideBox::EMPTY);
+    prims.iter().fold(empty, |(b, c), p| (b.union(p.bounds), c.with_point(p.bounds.centroid())))
 }
 
 #[derive(Clone, Copy)]
 struct Bin {
-    bounds: Aabb,
+    bounds: WideBox,
     count: u32,
 }
 
-const EMPTY_BIN: Bin = Bin { bounds: Aabb::EMPTY, count: 0 };
+const EMPTY_BIN: Bin = Bin { bounds: WideBox::EMPTY, count: 0 };
+
+/// Added to a small number it leaves its integer in the lowest bits, after rounding to the nearest: bins lie
+/// around whole numbers, the first and the last of half the width.
+const TO_INTEGER: f32 = 12_582_912.0;
 
 /// Maps centroids to bins.
-struct Binning {
-    bins: usize,
-    origin: Vec3,
-    scale: Vec3,
+struct Binning<const BINS: usize> {
+    origin: Vec4,
+    scale: Vec4,
 }
 
-impl Binning {
-    fn new(count: usize, centroids: &Aabb) -> Self {
-        let bins = (4 + count / 8).min(BINS);
-        // A little less than the number of bins, so that the upper end falls into the last one.
-        let scale = Vec3::splat(bins as f32 * (1.0 - 1e-6)) / centroids.size();
-        Self { bins, origin: centroids.min, scale }
+impl<const BINS: usize> Binning<BINS> {
+    fn new(centroids: &WideBox) -> Self {
+        // Along axes on which there is nothing to divide everything falls into the first bin.
+        let size = centroids.max - centroids.min;
+        let divides = size.cmpgt(Vec4::ZERO) & size.cmplt(Vec4::INFINITY);
+        let scale = Vec4::splat((BINS - 1) as f32) / Vec4::select(divides, size, Vec4::INFINITY);
+        Self { origin: Vec4::select(divides, centroids.min, Vec4::ZERO), scale }
     }
 
+    /// The bins of a primitive by axis.
+    fn bins(&self, prim: &BuildPrim) -> [usize; 3] {
+        let [x, y, z, _] = ((prim.bounds.centroid() - self.origin) * self.scale + Vec4::splat(TO_INTEGER)).to_array();
+        [x, y, z].map(|x| x.to_bits() as usize % BINS)
+    }
+
+    /// The bin of a primitive along one axis: what `bins` says there.
     fn bin(&self, prim: &BuildPrim, axis: usize) -> usize {
-        let x = (prim.min[axis] * 0.5 + prim.max[axis] * 0.5 - self.origin[axis]) * self.scale[axis];
-        (x as usize).min(self.bins - 1)
+        let centroid = prim.bounds.min[axis] * 0.5 + prim.bounds.max[axis] * 0.5;
+        ((centroid - self.origin[axis]) * self.scale[axis] + TO_INTEGER).to_bits() as usize % BINS
     }
 }
 
 /// Reorders the primitives by the cheapest split and returns the size of the first part; `None` where no bin border
-/// divides them.
-fn split(prims: &mut [BuildPrim], centroids: &Aabb, scale: f32) -> Option<usize> {
-    let binning = Binning::new(prims.len(), centroids);
+/// divides them. Few primitives need few bins.
+fn split(prims: &mut [BuildPrim], centroids: &WideBox, scale: f32) -> Option<usize> {
+    match prims.len() {
+        ..8 => split_into::<4>(prims, centroids, scale),
+        8..64 => split_into::<8>(prims, centroids, scale),
+        _ => split_into::<16>(prims, centroids, scale),
+    }
+}
+
+fn split_into<const BINS: usize>(prims: &mut [BuildPrim], centroids: &WideBox, scale: f32) -> Option<usize> {
+    let binning = Binning::<BINS>::new(centroids);
     let mut bins = [[EMPTY_BIN; BINS]; 3];
     for p in prims.iter() {
-        for axis in 0..3 {
-            let bin = &mut bins[axis][binning.bin(p, axis)];
-            bin.bounds = bin.bounds.union(p.bounds());
+        for (axis, i) in binning.bins(p).into_iter().enumerate() {
+            let bin = &mut bins[axis][i];
+            bin.bounds = bin.bounds.union(p.bounds);
             bin.count += 1;
         }
     }
     let mut best = (f32::INFINITY, 0, 0);
     for (axis, bins) in bins.iter().enumerate() {
-        let bins = &bins[..binning.bins];
         let mut right_costs = [0.0; BINS];
         let mut right = EMPTY_BIN;
-        for i in (1..bins.len()).rev() {
+        for i in (1..BINS).rev() {
             right.bounds = right.bounds.union(bins[i].bounds);
             right.count += bins[i].count;
-            right_costs[i] = scaled_half_area(&right.bounds, scale) * right.count as f32;
+            right_costs[i] = right.bounds.scaled_half_area(scale) * right.count as f32;
         }
         let mut left = EMPTY_BIN;
-        for i in 1..bins.len() {
+        for i in 1..BINS {
             left.bounds = left.bounds.union(bins[i - 1].bounds);
             left.count += bins[i - 1].count;
-            let cost = scaled_half_area(&left.bounds, scale) * left.count as f32 + right_costs[i];
+            let cost = left.bounds.scaled_half_area(scale) * left.count as f32 + right_costs[i];
             if left.count > 0 && (left.count as usize) < prims.len() && cost < best.0 {
                 best = (cost, axis, i);
             }

@@ -20,9 +20,6 @@ use photinus_intersect::methods::woop::{self, Started};
 /// Rays under way at a time.
 const SLOTS: usize = 32;
 
-/// Triangles that may wait to be finished.
-const CANDIDATES: usize = SLOTS * WIDTH;
-
 /// Places that a stack needs in a tree with so many levels of nodes: for the end, for all but one of the children of
 /// every node on the way, and for a whole node to be written.
 pub fn stack_places(levels: u32) -> usize {
@@ -116,8 +113,6 @@ struct Walk<'a, K: Kernel, F> {
     /// Where the children of each kind lie, and how many bytes apart.
     places: [(*const u8, usize); 4],
     states: States,
-    /// Triangles that passed the filter, by slot and lane.
-    candidates: [(u8, u8); CANDIDATES],
     set: F,
 }
 
@@ -141,8 +136,7 @@ impl WideBvh {
         let places = [nodes, nodes, blocks, ids];
         let stacks = Stacks::new(self.stack_places, SLOTS.min(rays.len()));
         let slots = [IDLE; SLOTS];
-        let candidates = [(0, 0); CANDIDATES];
-        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, places, states, candidates, set };
+        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, places, states, set };
         walk.start();
         while walk.states.lens != [0; 4] {
             walk.visit_nodes::<COUNT>(counters);
