@@ -12,6 +12,7 @@ mod direct;
 mod eye_pass;
 mod film;
 mod film_filter;
+mod footprint;
 mod light;
 mod maps;
 mod memory;

@@ -3,6 +3,7 @@
 
 use crate::SurfacePoint;
 use crate::bsdf::{Materials, SurfaceModel};
+use crate::footprint::uv_scale;
 use photinus_accel::Structure;
 use photinus_geometry::{Aabb, Frame, Hit, Primitives, Ray, Vec2, Vec3};
 use photinus_scene::{
@@ -215,8 +216,8 @@ impl World {
         } else {
             self.sphere_surface(record, (hit.prim - triangles) as usize, ray.at(hit.t))
         };
-        let stretch = point.dp_du.length().min(point.dp_dv.length());
-        point.uv_footprint = if width > 0.0 && stretch > 1e-12 { width / stretch } else { 0.0 };
+        let scale = uv_scale(point.dp_du, point.dp_dv);
+        point.uv_footprint = if width > 0.0 && scale > 0.0 { width / scale } else { 0.0 };
         point.shape = shape as u32;
         point.prim = hit.prim;
         point

@@ -150,7 +150,8 @@ impl MipMap {
         if filter == TextureFilter::Nearest {
             return nearest(&self.levels[0], uv, wrap);
         }
-        let texels = footprint * self.levels[0].width.max(self.levels[0].height) as f32;
+        // The root of the pixels that the footprint covers: pictures of long planks are stretched as their pixels are.
+        let texels = footprint * (self.levels[0].width as f32 * self.levels[0].height as f32).sqrt();
         // The comparison is false for NaN: the base level then.
         if !(texels > 1.0) {
             return bilinear(&self.levels[0], uv, wrap);

@@ -37,8 +37,10 @@ struct Prepared {
     kind: Kind,
     /// Rows of the affine map from the surface's coordinates to the texture's: (a, b, offset) for u and for v.
     to_uv: [Vec3; 2],
-    /// Largest stretch of that map, which scales the footprint.
+    /// Largest stretch of that map.
     stretch: f32,
+    /// What the map does to the footprint: the root of its change of area, as for the surface's own coordinates.
+    scale: f32,
     /// Length in the surface's coordinates over which differences are taken: half a pixel of the finest picture.
     step: f32,
 }
@@ -77,7 +79,8 @@ impl Textures {
             let to_uv = [Vec3::new(m.x_axis.x, m.y_axis.x, offset.x), Vec3::new(m.x_axis.y, m.y_axis.y, offset.y)];
             let column = |x: f32, y: f32| (x * x + y * y).sqrt();
             let stretch = column(to_uv[0].x, to_uv[1].x).max(column(to_uv[0].y, to_uv[1].y));
-            result.textures.push(Prepared { kind, to_uv, stretch, step: 0.0 });
+            let scale = (to_uv[0].x * to_uv[1].y - to_uv[0].y * to_uv[1].x).abs().sqrt();
+            result.textures.push(Prepared { kind, to_uv, stretch, scale, step: 0.0 });
         }
         for i in 0..result.textures.len() {
             result.textures[i].step = result.finest_step(TextureId(i as u32), 0);
@@ -125,7 +128,7 @@ impl Textures {
         let Some(texture) = self.textures.get(id.0 as usize).filter(|_| depth < MAX_DEPTH) else { return GREY };
         let p = Vec3::new(at.uv.x, at.uv.y, 1.0);
         let uv = Vec2::new(texture.to_uv[0].dot(p), texture.to_uv[1].dot(p));
-        let footprint = at.footprint * texture.stretch;
+        let footprint = at.footprint * texture.scale;
         match texture.kind {
             Kind::Bitmap { map, filter, wrap, alpha } => {
                 let c = self.maps[map as usize].lookup(uv, footprint, filter, wrap);
@@ -238,6 +241,21 @@ mod tests {
         assert!((red(0, 2.0 / 16.0) - 0.5).abs() < 1e-5);
         assert!((red(1, 2.0 / 16.0 / 8.0) - 0.5).abs() < 1e-5);
         assert_eq!(red(1, 0.5 / 16.0 / 8.0), 1.0);
+    }
+
+    /// A plank's picture of 64 x 4 pixels, repeated 16 times across: every pixel of it is square on the surface.
+    #[test]
+    fn footprints_keep_their_area_in_stretched_pictures() {
+        let dots = bitmap(64, 4, |x, y| [f32::from((x + y) % 2 == 0), 0.0, 0.0, 1.0]);
+        let to_uv = Affine3A::from_scale(Vec3::new(1.0, 16.0, 1.0));
+        let textures = Textures::new(&[texture(picture(&dots, TextureFilter::Bilinear, false), to_uv)]);
+        let red = |footprint| {
+            let lookup = TextureLookup { footprint, ..at(0.5 / 64.0, 0.5 / 64.0) };
+            textures.color(ColorInput::Texture(TextureId(0)), &lookup).x
+        };
+        let sharp = red(0.0);
+        assert_eq!(red(1.0 / 64.0), sharp, "one pixel wide");
+        assert!((red(2.0 / 64.0) - 0.5).abs() < 1e-5, "two pixels wide");
     }
 
     #[test]
