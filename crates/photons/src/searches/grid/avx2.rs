@@ -3,9 +3,8 @@
 //! No fused multiply-add: every operation rounds as the scalar kernel's does. Masks are vectors of all ones or zeros.
 
 use super::blocks::{Block, Boxes, LANES};
-use super::kernels::{
-    CONE, CONSTANT, Candidates, EPANECHNIKOV, GAUSSIAN, NormalMemo, VectorKernels, kernel_index, key,
-};
+use super::candidates::{Candidates, key};
+use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
 use crate::Gathered;
 use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
@@ -20,11 +19,13 @@ const HALF: usize = 8;
 
 /// These kernels, where the processor has what they need.
 pub(crate) fn kernels() -> Option<VectorKernels> {
-    is_x86_feature_detected!("avx2").then_some(VectorKernels { name: "avx2", cull, prefetch, gather, scan })
+    let has_all =
+        is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
+    has_all.then_some(VectorKernels { name: "avx2", cull, prefetch, gather, select, scan })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
-    // SAFETY: `kernels` hands this function out only where the processor has AVX2.
+    // SAFETY: `kernels` hands this function out only where the processor has AVX2, POPCNT and BMI1.
     unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
 }
 
@@ -52,6 +53,11 @@ fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut Norm
             _ => gather_kernel::<GAUSSIAN>(blocks, hits, query, memo),
         }
     }
+}
+
+fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec<Selected>) {
+    // SAFETY: as above.
+    unsafe { select_blocks(blocks, hits, query, found) }
 }
 
 fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
@@ -176,58 +182,111 @@ fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hit
     }
 }
 
-#[target_feature(enable = "avx2,popcnt")]
+/// The inclusion test of a query.
+struct Inclusion<'a> {
+    position: [__m256; 3],
+    normal: [__m256; 3],
+    r2: __m256,
+    /// The largest low byte of a surface word where the photon's depth is small enough.
+    low_limit: __m256i,
+    memo: &'a mut NormalMemo,
+}
+
+impl<'a> Inclusion<'a> {
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt,bmi1")]
+    fn new(query: &PreparedQuery, memo: &'a mut NormalMemo) -> Self {
+        memo.turn_to(query);
+        Self {
+            position: splat(query.position),
+            normal: splat(query.normal),
+            r2: _mm256_set1_ps(query.r2),
+            low_limit: _mm256_set1_epi32(query.low_limit as i32),
+            memo,
+        }
+    }
+
+    /// The lanes found, as masks, and the squared distances of all, for half a block.
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt,bmi1")]
+    fn test(&mut self, block: &Block, half: usize) -> (__m256, __m256) {
+        let d2 = distances_sq(block, half, self.position);
+        let near = _mm256_cmp_ps::<_CMP_LE_OQ>(d2, self.r2);
+        let surface = words(&block.surface, half);
+        let low = _mm256_and_si256(surface, _mm256_set1_epi32(LOW_MASK as i32));
+        let too_deep = _mm256_castsi256_ps(_mm256_cmpgt_epi32(low, self.low_limit));
+        let mut found = _mm256_andnot_ps(too_deep, near);
+        let normals = _mm256_sub_epi32(surface, low);
+        let known = _mm256_castsi256_ps(_mm256_cmpeq_epi32(normals, _mm256_set1_epi32(self.memo.word as i32)));
+        let others = _mm256_movemask_ps(_mm256_andnot_ps(known, found));
+        if others != 0 || !self.memo.passes {
+            found = _mm256_and_ps(found, normals_within_60(surface, self.normal));
+            let learnt = _mm256_movemask_ps(found) & others;
+            if learnt != 0 {
+                self.memo.learn(block.surface[half * HALF + learnt.trailing_zeros() as usize]);
+            }
+        }
+        (found, d2)
+    }
+}
+
+#[target_feature(enable = "avx2,popcnt,bmi1")]
 fn gather_kernel<const KERNEL: u8>(
     blocks: &[Block],
     hits: &[u32],
     query: &PreparedQuery,
     memo: &mut NormalMemo,
 ) -> Gathered {
-    memo.turn_to(query);
-    let position = splat(query.position);
-    let normal = splat(query.normal);
-    let r2 = _mm256_set1_ps(query.r2);
+    let mut inclusion = Inclusion::new(query, memo);
     let inv_r2 = _mm256_set1_ps(query.kernel.inv_r2);
     let inv_k = _mm256_set1_ps(query.kernel.inv_k);
-    let low_limit = _mm256_set1_epi32(query.low_limit as i32);
     let mantissa_masks = MANTISSA_MASKS.map(|mask| _mm256_set1_epi32(mask as i32));
     let mut sums = [[_mm256_setzero_ps(); 2]; 3];
     let mut count = 0;
     for block in hits {
         let block = &blocks[*block as usize];
         for half in 0..2 {
-            let d2 = distances_sq(block, half, position);
-            let near = _mm256_cmp_ps::<_CMP_LE_OQ>(d2, r2);
-            if _mm256_movemask_ps(near) == 0 {
-                continue;
-            }
-            let surface = words(&block.surface, half);
-            let low = _mm256_and_si256(surface, _mm256_set1_epi32(LOW_MASK as i32));
-            let too_deep = _mm256_castsi256_ps(_mm256_cmpgt_epi32(low, low_limit));
-            let mut hit = _mm256_andnot_ps(too_deep, near);
-            let normals = _mm256_sub_epi32(surface, low);
-            let known = _mm256_castsi256_ps(_mm256_cmpeq_epi32(normals, _mm256_set1_epi32(memo.word as i32)));
-            let others = _mm256_movemask_ps(_mm256_andnot_ps(known, hit));
-            if others != 0 || !memo.passes {
-                hit = _mm256_and_ps(hit, normals_within_60(surface, normal));
-                let learnt = _mm256_movemask_ps(hit) & others;
-                if learnt != 0 {
-                    memo.learn(block.surface[half * HALF + learnt.trailing_zeros() as usize]);
-                }
-            }
+            let (found, d2) = inclusion.test(block, half);
             let flux = words(&block.flux, half);
             let scale = _mm256_and_si256(_mm256_srli_epi32::<2>(flux), _mm256_set1_epi32(RAW_SCALE_MASK as i32));
             let weight = _mm256_mul_ps(_mm256_castsi256_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
             for (sum, mask) in sums.iter_mut().zip(mantissa_masks) {
-                let mantissa = _mm256_and_si256(flux, mask);
+                let mantissa = _mm256_cvtepi32_ps(_mm256_and_si256(flux, mask));
                 // Sums are never -0, so that adding +0 in the other lanes leaves them as they are.
-                let term = _mm256_and_ps(hit, _mm256_mul_ps(_mm256_cvtepi32_ps(mantissa), weight));
-                sum[half] = _mm256_add_ps(sum[half], term);
+                sum[half] = _mm256_add_ps(sum[half], _mm256_and_ps(found, _mm256_mul_ps(mantissa, weight)));
             }
-            count += _mm256_movemask_ps(hit).count_ones();
+            count += _mm256_movemask_ps(found).count_ones();
         }
     }
     Gathered { flux: Vec3::from_array(sums.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
+}
+
+#[target_feature(enable = "avx2,popcnt,bmi1")]
+fn select_blocks(blocks: &[Block], hits: &[u32], query: &PreparedQuery, selected: &mut Vec<Selected>) {
+    let mut memo = NormalMemo::NONE;
+    let mut inclusion = Inclusion::new(query, &mut memo);
+    for &block in hits {
+        let photons = &blocks[block as usize];
+        let [low, high] = [0, 1].map(|half| inclusion.test(photons, half));
+        let lanes = _mm256_movemask_ps(low.0) | _mm256_movemask_ps(high.0) << HALF;
+        if lanes != 0 {
+            let distances_sq = stored([low.1, high.1]);
+            selected.push(Selected { block, lanes: lanes as u32, distances_sq });
+        }
+    }
+}
+
+/// Two vectors as the lanes of a block.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn stored([low, high]: [__m256; 2]) -> [f32; LANES] {
+    let mut lanes = [0.0; LANES];
+    // SAFETY: each store writes 32 bytes of the 64 of `lanes`.
+    unsafe {
+        _mm256_storeu_ps(lanes.as_mut_ptr(), low);
+        _mm256_storeu_ps(lanes.as_mut_ptr().add(HALF), high);
+    }
+    lanes
 }
 
 #[target_feature(enable = "avx2,bmi1")]
@@ -242,12 +301,7 @@ fn scan_blocks(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: 
         if near == 0 {
             continue;
         }
-        let mut lanes = [0f32; LANES];
-        // SAFETY: each store writes 32 bytes of the 64 of `lanes`.
-        unsafe {
-            _mm256_storeu_ps(lanes.as_mut_ptr(), d2[0]);
-            _mm256_storeu_ps(lanes.as_mut_ptr().add(HALF), d2[1]);
-        }
+        let lanes = stored(d2);
         let free = candidates.free(LANES);
         let mut count = 0;
         while near != 0 {

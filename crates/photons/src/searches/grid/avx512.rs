@@ -3,7 +3,8 @@
 //! No fused multiply-add: every operation rounds as the scalar kernel's does.
 
 use super::blocks::{Block, Boxes, LANES};
-use super::kernels::{CONE, CONSTANT, Candidates, EPANECHNIKOV, GAUSSIAN, NormalMemo, VectorKernels, kernel_index};
+use super::candidates::Candidates;
+use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
 use crate::Gathered;
 use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
@@ -15,11 +16,13 @@ use std::ops::Range;
 
 /// These kernels, where the processor has what they need.
 pub(crate) fn kernels() -> Option<VectorKernels> {
-    is_x86_feature_detected!("avx512f").then_some(VectorKernels { name: "avx512", cull, prefetch, gather, scan })
+    let has_all =
+        is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
+    has_all.then_some(VectorKernels { name: "avx512", cull, prefetch, gather, select, scan })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
-    // SAFETY: `kernels` hands this function out only where the processor has AVX-512F.
+    // SAFETY: `kernels` hands this function out only where the processor has AVX-512F, POPCNT and BMI1.
     unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
 }
 
@@ -47,6 +50,11 @@ fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut Norm
             _ => gather_kernel::<GAUSSIAN>(blocks, hits, query, memo),
         }
     }
+}
+
+fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec<Selected>) {
+    // SAFETY: as above.
+    unsafe { select_blocks(blocks, hits, query, found) }
 }
 
 fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
@@ -179,6 +187,64 @@ fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hit
     }
 }
 
+/// The inclusion test of a query.
+struct Inclusion<'a> {
+    position: [__m512; 3],
+    normal: [__m512; 3],
+    r2: __m512,
+    /// Low bytes of surface words are below this where the photon's depth is small enough.
+    low_end: __m512i,
+    /// A normal that passes ...
+    known: __m512i,
+    /// ... and `low_end`, or zero where none is known.
+    known_end: __m512i,
+    memo: &'a mut NormalMemo,
+    /// One normal is learnt a query, lest every block wait for the one before where all normals differ.
+    has_learnt: bool,
+}
+
+impl<'a> Inclusion<'a> {
+    #[inline]
+    #[target_feature(enable = "avx512f,popcnt,bmi1")]
+    fn new(query: &PreparedQuery, memo: &'a mut NormalMemo) -> Self {
+        memo.turn_to(query);
+        let low_end = _mm512_set1_epi32(query.low_limit as i32 + 1);
+        Self {
+            position: splat(query.position),
+            normal: splat(query.normal),
+            r2: _mm512_set1_ps(query.r2),
+            low_end,
+            known: _mm512_set1_epi32(memo.word as i32),
+            known_end: if memo.passes { low_end } else { _mm512_setzero_si512() },
+            memo,
+            has_learnt: false,
+        }
+    }
+
+    /// The lanes found and the squared distances of all.
+    #[inline]
+    #[target_feature(enable = "avx512f,popcnt,bmi1")]
+    fn test(&mut self, block: &Block) -> (__mmask16, __m512) {
+        let d2 = distances_sq(block, self.position);
+        let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, self.r2);
+        let surface = words(&block.surface);
+        // The known normal leaves only the low byte, which is small enough where the depth is.
+        let mut found = _mm512_mask_cmplt_epu32_mask(near, _mm512_xor_si512(surface, self.known), self.known_end);
+        if found != near {
+            let low = _mm512_and_si512(surface, _mm512_set1_epi32(LOW_MASK as i32));
+            let shallow = _mm512_mask_cmplt_epu32_mask(near & !found, low, self.low_end);
+            let others = normals_within_60(surface, self.normal) & shallow;
+            if others != 0 && !self.has_learnt {
+                self.has_learnt = true;
+                self.memo.learn(block.surface[others.trailing_zeros() as usize]);
+                (self.known, self.known_end) = (_mm512_set1_epi32(self.memo.word as i32), self.low_end);
+            }
+            found |= others;
+        }
+        (found, d2)
+    }
+}
+
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
 fn gather_kernel<const KERNEL: u8>(
     blocks: &[Block],
@@ -186,48 +252,40 @@ fn gather_kernel<const KERNEL: u8>(
     query: &PreparedQuery,
     memo: &mut NormalMemo,
 ) -> Gathered {
-    memo.turn_to(query);
-    let position = splat(query.position);
-    let normal = splat(query.normal);
-    let r2 = _mm512_set1_ps(query.r2);
+    let mut inclusion = Inclusion::new(query, memo);
     let inv_r2 = _mm512_set1_ps(query.kernel.inv_r2);
     let inv_k = _mm512_set1_ps(query.kernel.inv_k);
-    let low_end = _mm512_set1_epi32(query.low_limit as i32 + 1);
     let mantissa_masks = MANTISSA_MASKS.map(|mask| _mm512_set1_epi32(mask as i32));
-    let mut known = _mm512_set1_epi32(memo.word as i32);
-    let mut known_end = if memo.passes { low_end } else { _mm512_setzero_si512() };
-    // Once a query, lest every block wait for the one before where all normals differ.
-    let mut learnt = false;
     let mut sums = [_mm512_setzero_ps(); 3];
     let mut count = 0;
     for block in hits {
         let block = &blocks[*block as usize];
-        let d2 = distances_sq(block, position);
-        let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, r2);
-        let surface = words(&block.surface);
-        // The known normal leaves only the low byte, which is small enough where the depth is.
-        let mut hit = _mm512_mask_cmplt_epu32_mask(near, _mm512_xor_si512(surface, known), known_end);
-        if hit != near {
-            let low = _mm512_and_si512(surface, _mm512_set1_epi32(LOW_MASK as i32));
-            let shallow = _mm512_mask_cmplt_epu32_mask(near & !hit, low, low_end);
-            let others = normals_within_60(surface, normal) & shallow;
-            if others != 0 && !learnt {
-                learnt = true;
-                memo.learn(block.surface[others.trailing_zeros() as usize]);
-                (known, known_end) = (_mm512_set1_epi32(memo.word as i32), low_end);
-            }
-            hit |= others;
-        }
+        let (found, d2) = inclusion.test(block);
         let flux = words(&block.flux);
         let scale = _mm512_and_si512(_mm512_srli_epi32::<2>(flux), _mm512_set1_epi32(RAW_SCALE_MASK as i32));
         let weight = _mm512_mul_ps(_mm512_castsi512_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
         for (sum, mask) in sums.iter_mut().zip(mantissa_masks) {
-            let mantissa = _mm512_and_si512(flux, mask);
-            *sum = _mm512_mask_add_ps(*sum, hit, *sum, _mm512_mul_ps(_mm512_cvtepi32_ps(mantissa), weight));
+            let mantissa = _mm512_cvtepi32_ps(_mm512_and_si512(flux, mask));
+            *sum = _mm512_mask_add_ps(*sum, found, *sum, _mm512_mul_ps(mantissa, weight));
         }
-        count += hit.count_ones();
+        count += found.count_ones();
     }
     Gathered { flux: Vec3::from_array(sums.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn select_blocks(blocks: &[Block], hits: &[u32], query: &PreparedQuery, selected: &mut Vec<Selected>) {
+    let mut memo = NormalMemo::NONE;
+    let mut inclusion = Inclusion::new(query, &mut memo);
+    for &block in hits {
+        let (found, d2) = inclusion.test(&blocks[block as usize]);
+        if found != 0 {
+            let mut distances_sq = [0.0; LANES];
+            // SAFETY: the array holds the 64 bytes written.
+            unsafe { _mm512_storeu_ps(distances_sq.as_mut_ptr(), d2) };
+            selected.push(Selected { block, lanes: found.into(), distances_sq });
+        }
+    }
 }
 
 #[target_feature(enable = "avx512f,popcnt")]

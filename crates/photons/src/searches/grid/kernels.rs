@@ -1,10 +1,11 @@
 //! What a set of vector kernels offers, and the choice among them at run time. All give the same bits.
 
-use super::blocks::{Block, Boxes};
+use super::blocks::{Block, Boxes, LANES};
+use super::candidates::Candidates;
 use super::scalar;
 use crate::inclusion::PreparedQuery;
 use crate::photon::NORMAL_MASK;
-use crate::{Gathered, Kernel, Neighbor};
+use crate::{Gathered, Kernel};
 use photinus_geometry::Vec3;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -33,6 +34,8 @@ pub(crate) type Cull = fn(&Boxes, &[Range<u32>], Vec3, f32, &mut Vec<u32>);
 pub(crate) type Prefetch = fn(&[Block], &[u32]);
 /// Sums what a query finds in these blocks.
 pub(crate) type Gather = fn(&[Block], &[u32], &PreparedQuery, &mut NormalMemo) -> Gathered;
+/// Finds what a query finds in these blocks: one entry for each block with any.
+pub(crate) type Select = fn(&[Block], &[u32], &PreparedQuery, &mut Vec<Selected>);
 /// Collects the photons within a squared radius of a position in these blocks; the ids of all slots come second.
 pub(crate) type Scan = fn(&[Block], &[u32], &[u32], Vec3, f32, &mut Candidates);
 
@@ -43,7 +46,18 @@ pub(crate) struct VectorKernels {
     pub(crate) cull: Cull,
     pub(crate) prefetch: Prefetch,
     pub(crate) gather: Gather,
+    pub(crate) select: Select,
     pub(crate) scan: Scan,
+}
+
+/// Photons of a block that a query finds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Selected {
+    pub(crate) block: u32,
+    /// A bit a lane.
+    pub(crate) lanes: u32,
+    /// Of every lane, found or not.
+    pub(crate) distances_sq: [f32; LANES],
 }
 
 /// Every set that this processor runs, the fastest first.
@@ -89,75 +103,4 @@ impl NormalMemo {
         self.word = surface & NORMAL_MASK;
         self.passes = true;
     }
-}
-
-/// The photons of a scan, as keys of distance and id, cut down to the nearest k whenever they get many.
-#[derive(Debug, Default)]
-pub(crate) struct Candidates {
-    keys: Vec<u64>,
-    len: usize,
-    k: usize,
-}
-
-/// Candidates beyond k that are collected before the farthest are dropped.
-const SURPLUS: usize = 192;
-
-impl Candidates {
-    /// Starts a search for the `k` nearest.
-    pub(crate) fn start(&mut self, k: usize) {
-        (self.len, self.k) = (0, k);
-    }
-
-    /// Room for `count` keys behind those held.
-    #[inline]
-    pub(crate) fn free(&mut self, count: usize) -> &mut [u64] {
-        if self.keys.len() < self.len + count {
-            self.keys.resize((self.len + count).max(2 * self.keys.len()).max(256), 0);
-        }
-        &mut self.keys[self.len..]
-    }
-
-    /// Keeps `count` keys that were written to [`Candidates::free`]; returns the squared distance beyond which nothing
-    /// more can be among the nearest, when that is news.
-    #[inline]
-    pub(crate) fn push(&mut self, count: usize) -> Option<f32> {
-        self.len += count;
-        (self.len >= self.k.saturating_add(SURPLUS)).then(|| self.cut())
-    }
-
-    /// Drops all but the nearest k; returns the squared distance of the farthest left.
-    fn cut(&mut self) -> f32 {
-        let (_, farthest, _) = self.keys[..self.len].select_nth_unstable(self.k - 1);
-        self.len = self.k;
-        f32::from_bits((*farthest >> 32) as u32)
-    }
-
-    /// Photons held.
-    pub(crate) fn len(&self) -> usize {
-        self.len
-    }
-
-    /// The nearest k in order.
-    pub(crate) fn finish(&mut self, found: &mut Vec<Neighbor>) {
-        if self.len > self.k {
-            self.cut();
-        }
-        self.keys[..self.len].sort_unstable();
-        self.take_all(found);
-    }
-
-    /// All that were collected, in no order.
-    pub(crate) fn take_all(&mut self, found: &mut Vec<Neighbor>) {
-        let keys = &self.keys[..self.len];
-        found.clear();
-        found.extend(
-            keys.iter().map(|key| Neighbor { distance_sq: f32::from_bits((key >> 32) as u32), photon: *key as u32 }),
-        );
-    }
-}
-
-/// A key of [`Candidates`]: distances are not negative, so that their bits sort as they do.
-#[inline]
-pub(crate) fn key(distance_sq: f32, id: u32) -> u64 {
-    u64::from(distance_sq.to_bits()) << 32 | u64::from(id)
 }

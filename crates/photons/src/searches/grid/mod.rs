@@ -12,6 +12,7 @@ mod avx512;
 mod batch;
 mod blocks;
 mod build;
+mod candidates;
 mod cells;
 mod kernels;
 mod reach;
@@ -25,8 +26,9 @@ use crate::inclusion::{PreparedQuery, radius_sq};
 use crate::{BuildOptions, GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use blocks::{Block, Boxes, LANES};
 use build::{Built, build};
+use candidates::Candidates;
 use cells::Cells;
-use kernels::{Candidates, VectorKernels};
+use kernels::{Selected, VectorKernels};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
@@ -98,12 +100,14 @@ impl Search for Grid {
         let mut scratch = Scratch::new();
         let prepared = PreparedQuery::new(query, Kernel::Constant);
         self.find_blocks(query.position, query.radius, prepared.r2, &mut scratch);
-        for block in scratch.hits.iter().map(|block| &self.blocks[*block as usize]) {
-            let distances = block.distances_sq(query.position);
-            for (lane, d2) in distances.into_iter().enumerate() {
-                if d2 <= prepared.r2 && prepared.accepts(block.surface[lane]) {
-                    visit(&block.photon(lane), d2);
-                }
+        let mut selected = Vec::with_capacity(scratch.hits.len());
+        (self.kernels.select)(&self.blocks, &scratch.hits, &prepared, &mut selected);
+        for Selected { block, mut lanes, distances_sq } in selected {
+            let block = &self.blocks[block as usize];
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                visit(&block.photon(lane), distances_sq[lane]);
+                lanes &= lanes - 1;
             }
         }
     }
@@ -112,8 +116,7 @@ impl Search for Grid {
         let mut scratch = Scratch::new();
         let r2 = radius_sq(position, radius);
         self.find_blocks(position, radius, r2, &mut scratch);
-        let mut candidates = Candidates::default();
-        candidates.start(usize::MAX);
+        let mut candidates = Candidates::new(usize::MAX);
         (self.kernels.scan)(&self.blocks, &self.ids, &scratch.hits, position, r2, &mut candidates);
         candidates.take_all(found);
         found.sort_unstable_by_key(|n| n.photon);
@@ -127,13 +130,13 @@ impl Search for Grid {
             return;
         }
         let mut scratch = Scratch::new();
-        let mut candidates = Candidates::default();
+        let mut candidates = Candidates::new(k);
         let mut reach = self.cells.reach(position, k, self.table.photons_a_cell());
         loop {
             let last = !(reach < radius);
             let (ball, ball_sq) = if last { (radius, r2) } else { (reach, reach * reach) };
             self.find_blocks(position, ball, ball_sq, &mut scratch);
-            candidates.start(k);
+            candidates.clear();
             (self.kernels.scan)(&self.blocks, &self.ids, &scratch.hits, position, ball_sq, &mut candidates);
             if last || candidates.len() >= k || candidates.len() == self.photon_count {
                 break;

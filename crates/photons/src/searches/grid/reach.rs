@@ -19,7 +19,7 @@ pub(crate) struct Scratch {
 
 impl Scratch {
     pub(crate) fn new() -> Self {
-        Self { half_cell: Vec3::NAN, radius: -1.0, ranges: Vec::new(), hits: Vec::new() }
+        Self { half_cell: Vec3::NAN, radius: -1.0, ranges: Vec::with_capacity(16), hits: Vec::with_capacity(64) }
     }
 }
 

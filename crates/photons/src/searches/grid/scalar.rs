@@ -1,7 +1,8 @@
 //! The kernels one photon at a time: what the vector kernels must equal bit for bit.
 
 use super::blocks::{Block, Boxes, LANES};
-use super::kernels::{Candidates, NormalMemo, VectorKernels, key};
+use super::candidates::{Candidates, key};
+use super::kernels::{NormalMemo, Selected, VectorKernels};
 use crate::Gathered;
 use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
 use crate::inclusion::PreparedQuery;
@@ -9,7 +10,8 @@ use photinus_geometry::Vec3;
 use std::ops::Range;
 
 /// These kernels, for any processor.
-pub(crate) const KERNELS: VectorKernels = VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, scan };
+pub(crate) const KERNELS: VectorKernels =
+    VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, select, scan };
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
     let position = position.to_array();
@@ -41,6 +43,18 @@ fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, _: &mut NormalM
         }
     }
     Gathered { flux: Vec3::from_array(sums.map(tree_sum)) * PLACED_UNITS, count }
+}
+
+fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec<Selected>) {
+    for &block in hits {
+        let photons = &blocks[block as usize];
+        let distances_sq = photons.distances_sq(query.position);
+        let is_found = |lane: &usize| distances_sq[*lane] <= query.r2 && query.accepts(photons.surface[*lane]);
+        let lanes = (0..LANES).filter(is_found).fold(0, |lanes, lane| lanes | 1 << lane);
+        if lanes != 0 {
+            found.push(Selected { block, lanes, distances_sq });
+        }
+    }
 }
 
 /// Halves folded onto one another: lane i + lane i + 8, then 4, 2, 1.

@@ -35,6 +35,12 @@ fn vector_kernels_equal_the_scalar_kernel_bit_for_bit() {
                 scalar.within_radius(query.position, query.radius, &mut expected);
                 vector.within_radius(query.position, query.radius, &mut found);
                 assert_eq!(found, expected, "{context}: within, {query:?}");
+                let visited = |grid: &Grid| {
+                    let mut visited = Vec::new();
+                    grid.visit(query, &mut |photon, d2| visited.push((photon.to_words(), d2.to_bits())));
+                    visited
+                };
+                assert_eq!(visited(&vector), visited(&scalar), "{context}: visits, {query:?}");
                 for k in [1, 50, 300] {
                     scalar.nearest(query.position, k, query.radius * 2.0, &mut expected);
                     vector.nearest(query.position, k, query.radius * 2.0, &mut found);
