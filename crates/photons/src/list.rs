@@ -30,7 +30,7 @@ pub struct SearchMember {
 
 /// All photon searches, the default first.
 pub const SEARCHES: &[SearchMember] = &[
-    SearchMember { name: "grid", about: grid::ABOUT, builder: |p, o| Box::new(grid::Grid::new(&p, o)) },
+    SearchMember { name: "grid", about: grid::ABOUT, builder: |p, o| Box::new(grid::Grid::new(p, o)) },
     SearchMember {
         name: "kd-balanced",
         about: kd_balanced::ABOUT,

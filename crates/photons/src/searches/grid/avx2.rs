@@ -60,7 +60,7 @@ fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec
     unsafe { select_blocks(blocks, hits, query, found) }
 }
 
-fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
     // SAFETY: as above.
     unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
 }
@@ -290,7 +290,14 @@ fn stored([low, high]: [__m256; 2]) -> [f32; LANES] {
 }
 
 #[target_feature(enable = "avx2,bmi1")]
-fn scan_blocks(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+fn scan_blocks(
+    blocks: &[Block],
+    ids: &[[u32; LANES]],
+    hits: &[u32],
+    position: Vec3,
+    r2: f32,
+    candidates: &mut Candidates,
+) {
     let position = splat(position);
     let mut limit = r2;
     for &block in hits {
@@ -306,7 +313,7 @@ fn scan_blocks(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: 
         let mut count = 0;
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
-            free[count] = key(lanes[lane], ids[block as usize * LANES + lane]);
+            free[count] = key(lanes[lane], ids[block as usize][lane]);
             count += 1;
             near &= near - 1;
         }

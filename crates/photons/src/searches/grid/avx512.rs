@@ -57,7 +57,7 @@ fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec
     unsafe { select_blocks(blocks, hits, query, found) }
 }
 
-fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
     // SAFETY: as above.
     unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
 }
@@ -289,7 +289,14 @@ fn select_blocks(blocks: &[Block], hits: &[u32], query: &PreparedQuery, selected
 }
 
 #[target_feature(enable = "avx512f,popcnt")]
-fn scan_blocks(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+fn scan_blocks(
+    blocks: &[Block],
+    ids: &[[u32; LANES]],
+    hits: &[u32],
+    position: Vec3,
+    r2: f32,
+    candidates: &mut Candidates,
+) {
     let position = splat(position);
     let mut limit = _mm512_set1_ps(r2);
     for &block in hits {
@@ -298,9 +305,7 @@ fn scan_blocks(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: 
         if near == 0 {
             continue;
         }
-        let first = block as usize * LANES;
-        let ids: &[u32; LANES] = ids[first..first + LANES].try_into().expect("ids are padded to whole blocks");
-        let (d2, ids) = (_mm512_castps_si512(d2), words(ids));
+        let (d2, ids) = (_mm512_castps_si512(d2), words(&ids[block as usize]));
         // Keys of 64 bits: the distance's bits above the id.
         let key = |d2: __m256i, id: __m256i| {
             _mm512_or_si512(_mm512_slli_epi64::<32>(_mm512_cvtepu32_epi64(d2)), _mm512_cvtepu32_epi64(id))

@@ -2,7 +2,10 @@
 
 use crate::Photon;
 use photinus_geometry::{Aabb, Vec3};
+use rayon::prelude::*;
 
+/// Blocks that are worth a task of their own.
+pub(crate) const BLOCKS_A_TASK: usize = 1 << 11;
 /// Photons in a block: the virtual lanes of every kernel.
 pub(crate) const LANES: usize = 16;
 
@@ -30,32 +33,30 @@ impl Block {
         direction: [0; LANES],
     };
 
-    /// A full block.
-    #[inline]
-    pub(crate) fn new(photons: &[Photon; LANES]) -> Self {
-        let mut block = Self::EMPTY;
-        for (lane, photon) in photons.iter().enumerate() {
-            block.set(lane, photon);
-        }
-        block
-    }
-
     /// The least and the largest position: a block has at least one photon.
     #[inline]
     pub(crate) fn bounds(&self) -> Aabb {
+        // In halves, which vectors do lane by lane. A comparison with the NaN of an empty lane is false and takes the
+        // other: lanes are empty from the last down, so that lane 0 never is.
         let fold = |lanes: &[f32; LANES]| {
-            // Comparisons with the NaN of empty lanes are false.
-            let least = lanes.iter().fold(lanes[0], |least, v| if *v < least { *v } else { least });
-            let most = lanes.iter().fold(lanes[0], |most, v| if *v > most { *v } else { most });
-            (least, most)
+            let (mut least, mut most) = (*lanes, *lanes);
+            let mut half = LANES / 2;
+            while half > 0 {
+                for i in 0..half {
+                    least[i] = if least[i + half] < least[i] { least[i + half] } else { least[i] };
+                    most[i] = if most[i + half] > most[i] { most[i + half] } else { most[i] };
+                }
+                half /= 2;
+            }
+            (least[0], most[0])
         };
         let (x, y, z) = (fold(&self.x), fold(&self.y), fold(&self.z));
         Aabb { min: Vec3::new(x.0, y.0, z.0), max: Vec3::new(x.1, y.1, z.1) }
     }
 
+    /// Puts the words of a photon into a lane.
     #[inline]
-    pub(crate) fn set(&mut self, lane: usize, photon: &Photon) {
-        let [x, y, z, flux, direction, surface] = photon.to_words();
+    pub(crate) fn set(&mut self, lane: usize, [x, y, z, flux, direction, surface]: [u32; 6]) {
         self.x[lane] = f32::from_bits(x);
         self.y[lane] = f32::from_bits(y);
         self.z[lane] = f32::from_bits(z);
@@ -93,7 +94,9 @@ pub(crate) struct Boxes {
 }
 
 impl Boxes {
-    pub(crate) fn new(boxes: Vec<Aabb>) -> Self {
+    /// The boxes of blocks, each of which has at least one photon.
+    pub(crate) fn new(blocks: &[Block]) -> Self {
+        let boxes: Vec<Aabb> = blocks.par_iter().with_min_len(BLOCKS_A_TASK).map(Block::bounds).collect();
         let bounds = std::array::from_fn(|side| {
             let of = |b: &Aabb| if side < 3 { b.min[side] } else { b.max[side - 3] };
             boxes.iter().map(of).chain([f32::NAN; LANES]).collect()

@@ -1,15 +1,12 @@
 //! Building the grid: box, keys, sort, blocks, table. Parallel, with the same bits on any number of threads.
 
-use super::blocks::{Block, Boxes, LANES};
+use super::blocks::{BLOCKS_A_TASK, Block, Boxes, LANES};
 use super::cells::Cells;
-use super::sort::{ITEMS_A_TASK, Item, sort_by_key};
+use super::sort::{ITEMS_A_TASK, Item, Sorted, sort_by_key};
 use super::table::CellTable;
 use crate::{BuildOptions, Photon};
 use photinus_geometry::Aabb;
 use rayon::prelude::*;
-
-/// Blocks that are worth a task of their own.
-const BLOCKS_A_TASK: usize = 1 << 11;
 
 /// What building gives.
 pub(crate) struct Built {
@@ -17,12 +14,12 @@ pub(crate) struct Built {
     pub(crate) table: CellTable,
     pub(crate) blocks: Vec<Block>,
     pub(crate) boxes: Boxes,
-    /// The id of each slot's photon, padded to whole blocks.
-    pub(crate) ids: Vec<u32>,
+    /// The ids of each block's photons.
+    pub(crate) ids: Vec<[u32; LANES]>,
 }
 
 /// Photons in blocks, in the order of cells that suit the hint.
-pub(crate) fn build(photons: &[Photon], options: &BuildOptions) -> Built {
+pub(crate) fn build(photons: Vec<Photon>, options: &BuildOptions) -> Built {
     let around = |photons: &[Photon]| Aabb::around(photons.iter().map(Photon::position));
     let bounds = photons.par_chunks(ITEMS_A_TASK).map(around).reduce(|| Aabb::EMPTY, Aabb::union);
     let radius = options.radius().unwrap_or_else(|| typical_radius(bounds, photons.len()));
@@ -34,30 +31,21 @@ pub(crate) fn build(photons: &[Photon], options: &BuildOptions) -> Built {
     }
 }
 
-fn arrange<I: Item>(photons: &[Photon], cells: Cells) -> Built {
-    let item = |(id, photon): (usize, &Photon)| I::new(cells.key(photon.position()), id as u32);
-    let items: Vec<I> = photons.par_iter().enumerate().with_min_len(ITEMS_A_TASK).map(item).collect();
-    let items = sort_by_key(items, cells.key_bits());
+fn arrange<I: Item>(photons: Vec<Photon>, cells: Cells) -> Built {
+    let Sorted { staged, items } = sort_by_key::<I>(photons, cells.key_bits(), |p| cells.key(p.position()));
     let table = CellTable::new(&cells, &items);
-    let count = photons.len().div_ceil(LANES);
-    let mut blocks = vec![Block::EMPTY; count];
-    let mut ids = vec![u32::MAX; count * LANES];
-    let chunks = blocks.par_iter_mut().zip(items.par_chunks(LANES)).zip(ids.par_chunks_mut(LANES));
-    let bounds = chunks.with_min_len(BLOCKS_A_TASK).map(|((block, items), ids)| {
-        for (id, item) in ids.iter_mut().zip(items) {
-            *id = item.id();
+    let fill = |items: &[I]| {
+        let (mut block, mut ids) = (Block::EMPTY, [u32::MAX; LANES]);
+        for (lane, item) in items.iter().enumerate() {
+            let [words @ .., id] = staged[item.id() as usize];
+            block.set(lane, words);
+            ids[lane] = id;
         }
-        if let Ok(ids) = <&[u32; LANES]>::try_from(&ids[..items.len()]) {
-            // All sixteen reads before any write: they miss the caches, and so wait together.
-            *block = Block::new(&ids.map(|id| photons[id as usize]));
-        } else {
-            for (lane, item) in items.iter().enumerate() {
-                block.set(lane, &photons[item.id() as usize]);
-            }
-        }
-        block.bounds()
-    });
-    let boxes = Boxes::new(bounds.collect());
+        (block, ids)
+    };
+    let (mut blocks, mut ids) = (Vec::new(), Vec::new());
+    items.par_chunks(LANES).with_min_len(BLOCKS_A_TASK).map(fill).unzip_into_vecs(&mut blocks, &mut ids);
+    let boxes = Boxes::new(&blocks);
     Built { cells, table, blocks, boxes, ids }
 }
 

@@ -4,6 +4,7 @@ use crate::Neighbor;
 
 /// Candidates beyond k that are collected before the farthest are dropped.
 const SURPLUS: usize = 192;
+
 /// Photons as keys of distance and id, cut down to the nearest k whenever they get many.
 #[derive(Debug)]
 pub(crate) struct Candidates {

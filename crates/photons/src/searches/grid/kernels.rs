@@ -36,8 +36,8 @@ pub(crate) type Prefetch = fn(&[Block], &[u32]);
 pub(crate) type Gather = fn(&[Block], &[u32], &PreparedQuery, &mut NormalMemo) -> Gathered;
 /// Finds what a query finds in these blocks: one entry for each block with any.
 pub(crate) type Select = fn(&[Block], &[u32], &PreparedQuery, &mut Vec<Selected>);
-/// Collects the photons within a squared radius of a position in these blocks; the ids of all slots come second.
-pub(crate) type Scan = fn(&[Block], &[u32], &[u32], Vec3, f32, &mut Candidates);
+/// Collects the photons within a squared radius of a position in these blocks; the ids of all blocks come second.
+pub(crate) type Scan = fn(&[Block], &[[u32; LANES]], &[u32], Vec3, f32, &mut Candidates);
 
 /// Kernels for one width of vectors.
 #[derive(Clone, Copy, Debug)]

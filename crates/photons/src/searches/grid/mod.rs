@@ -47,8 +47,8 @@ pub(crate) struct Grid {
     table: CellTable,
     blocks: Vec<Block>,
     boxes: Boxes,
-    /// The id of each slot's photon, padded to whole blocks.
-    ids: Vec<u32>,
+    /// The ids of each block's photons.
+    ids: Vec<[u32; LANES]>,
     photon_count: usize,
     /// The slot of each id's photon; made when first asked for.
     slots: OnceLock<Vec<u32>>,
@@ -56,13 +56,14 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    pub(crate) fn new(photons: &[Photon], options: &BuildOptions) -> Self {
+    pub(crate) fn new(photons: Vec<Photon>, options: &BuildOptions) -> Self {
         Self::with_kernels(photons, options, kernels::available()[0])
     }
 
-    fn with_kernels(photons: &[Photon], options: &BuildOptions, kernels: VectorKernels) -> Self {
+    fn with_kernels(photons: Vec<Photon>, options: &BuildOptions, kernels: VectorKernels) -> Self {
+        let photon_count = photons.len();
         let Built { cells, table, blocks, boxes, ids } = build(photons, options);
-        Self { cells, table, blocks, boxes, ids, photon_count: photons.len(), slots: OnceLock::new(), kernels }
+        Self { cells, table, blocks, boxes, ids, photon_count, slots: OnceLock::new(), kernels }
     }
 }
 
@@ -149,7 +150,7 @@ impl Search for Grid {
     fn photon(&self, id: u32) -> Photon {
         let slots = self.slots.get_or_init(|| {
             let mut slots = vec![0; self.photon_count];
-            for (slot, id) in (0u32..).zip(&self.ids[..self.photon_count]) {
+            for (slot, id) in (0u32..).zip(&self.ids.as_flattened()[..self.photon_count]) {
                 slots[*id as usize] = slot;
             }
             slots
@@ -161,7 +162,7 @@ impl Search for Grid {
     fn summary(&self) -> SearchSummary {
         let bytes = self.blocks.capacity() * size_of::<Block>()
             + self.boxes.bytes()
-            + self.ids.capacity() * size_of::<u32>()
+            + self.ids.capacity() * size_of::<[u32; LANES]>()
             + self.slots.get().map_or(0, |s| s.capacity() * size_of::<u32>())
             + self.table.bytes();
         SearchSummary {

@@ -69,14 +69,14 @@ fn tree_sum(mut lanes: [f32; LANES]) -> f32 {
     lanes[0]
 }
 
-fn scan(blocks: &[Block], ids: &[u32], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
+fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
     let mut limit = r2;
     for &block in hits {
         let free = candidates.free(LANES);
         let mut count = 0;
         for (lane, d2) in blocks[block as usize].distances_sq(position).into_iter().enumerate() {
             if d2 <= limit {
-                free[count] = key(d2, ids[block as usize * LANES + lane]);
+                free[count] = key(d2, ids[block as usize][lane]);
                 count += 1;
             }
         }

@@ -17,7 +17,8 @@ fn vector_kernels_equal_the_scalar_kernel_bit_for_bit() {
     let kernels = kernels::available();
     for set in sets() {
         let queries = queries(&set, 160);
-        let grid = |kernels| Grid::with_kernels(&set.photons, &BuildOptions { radius_hint: set.radius }, kernels);
+        let grid =
+            |kernels| Grid::with_kernels(set.photons.clone(), &BuildOptions { radius_hint: set.radius }, kernels);
         let scalar = grid(scalar::KERNELS);
         for &kernels in kernels {
             let vector = grid(kernels);
@@ -58,7 +59,7 @@ fn results_depend_on_neither_batch_nor_threads() {
         let gather = |threads: usize, queries: &[GatherQuery]| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
             pool.install(|| {
-                let grid = Grid::new(&set.photons, &BuildOptions { radius_hint: set.radius });
+                let grid = Grid::new(set.photons.clone(), &BuildOptions { radius_hint: set.radius });
                 let mut out = vec![Gathered::default(); queries.len()];
                 grid.gather(queries, Kernel::Epanechnikov, &mut out);
                 bits(&out)
@@ -68,7 +69,7 @@ fn results_depend_on_neither_batch_nor_threads() {
         for threads in [2, 7] {
             assert_eq!(gather(threads, &queries), expected, "seed {SEED}: {threads} threads on '{}'", set.name);
         }
-        let grid = Grid::new(&set.photons, &BuildOptions { radius_hint: set.radius });
+        let grid = Grid::new(set.photons.clone(), &BuildOptions { radius_hint: set.radius });
         for (query, expected) in queries.iter().zip(&expected).take(300) {
             let mut out = [Gathered::default()];
             grid.gather(std::slice::from_ref(query), Kernel::Epanechnikov, &mut out);
