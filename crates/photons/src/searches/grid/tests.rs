@@ -81,3 +81,32 @@ fn results_depend_on_neither_batch_nor_threads() {
         assert_eq!(reversed, expected, "seed {SEED}: reversed on '{}'", set.name);
     }
 }
+
+/// Enough photons for many tasks, with keys of both lengths.
+#[test]
+fn a_large_map_is_laid_out_alike_by_any_number_of_threads() {
+    let photons = support::photons(12, 150_000, |s| support::on_box(s, Vec3::new(4.0, 3.0, 5.0)));
+    for radius_hint in [0.05, 1e-4] {
+        let layout = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let grid = pool.install(|| Grid::new(photons.clone(), &BuildOptions { radius_hint }));
+            let slots = |slot: usize| (grid.ids.as_flattened()[slot], grid.blocks[slot / LANES].photon(slot % LANES));
+            let bounds = grid.boxes.bounds.clone().map(|side| side.into_iter().map(f32::to_bits).collect::<Vec<_>>());
+            ((0..photons.len()).map(slots).collect::<Vec<_>>(), bounds)
+        };
+        let (slots, bounds) = layout(1);
+        for threads in [2, 5] {
+            assert!(layout(threads) == (slots.clone(), bounds.clone()), "seed 12: {threads} threads, {radius_hint}");
+        }
+        let mut ids: Vec<u32> = slots.iter().map(|(id, _)| *id).collect();
+        ids.sort_unstable();
+        assert!(ids.into_iter().eq(0..photons.len() as u32), "seed 12: each photon once, {radius_hint}");
+        for (slot, (id, photon)) in slots.iter().enumerate() {
+            assert_eq!(photon, &photons[*id as usize], "seed 12: slot {slot}, {radius_hint}");
+            for axis in 0..3 {
+                let [least, most] = [axis, axis + 3].map(|side| f32::from_bits(bounds[side][slot / LANES]));
+                assert!((least..=most).contains(&photon.position()[axis]), "seed 12: slot {slot}, {radius_hint}");
+            }
+        }
+    }
+}
