@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 enum Install {
     /// A component of the pinned toolchain.
     Rustup(&'static str),
-    /// A Debian package.
+    /// Debian packages, with spaces between.
     Apt(&'static str),
 }
 
@@ -21,7 +21,7 @@ struct Tool {
 }
 
 const TOOLS: &[Tool] = &[
-    Tool { name: "a C linker", probe: &["cc", "--version"], install: Install::Apt("gcc") },
+    Tool { name: "a C linker", probe: &["cc", "--version"], install: Install::Apt("gcc libc6-dev") },
     Tool { name: "rustfmt", probe: &["cargo", "fmt", "--version"], install: Install::Rustup("rustfmt") },
     Tool { name: "clippy", probe: &["cargo", "clippy", "--version"], install: Install::Rustup("clippy") },
 ];
@@ -31,7 +31,7 @@ pub fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-/// Makes sure that every tool works: installs what is missing where `install` gives consent, else fails with the
+/// Makes sure that every tool works (the one system package that is ever installed is the C linker, which rustc calls): installs what is missing where `install` gives consent, else fails with the
 /// lines that install it.
 pub fn ensure(install: bool) -> Result<(), Failure> {
     let missing: Vec<&Tool> = TOOLS.iter().filter(|tool| !works(tool)).collect();
@@ -53,7 +53,7 @@ pub fn ensure(install: bool) -> Result<(), Failure> {
             .status()
             .map_err(|e| format!("`{line}` could not be started: {e}"))?;
         if !status.success() || !works(tool) {
-            return Err(format!("{} is missing and `{line}` did not install it", tool.name));
+            return Err(format!("{} is missing and `{line}` did not install it; install it by hand", tool.name));
         }
     }
     Ok(())
@@ -74,9 +74,9 @@ fn works(tool: &Tool) -> bool {
 fn command_line(tool: &Tool) -> String {
     match tool.install {
         Install::Rustup(component) => format!("rustup component add {component}"),
-        Install::Apt(package) => {
+        Install::Apt(packages) => {
             let sudo = if is_root() { "" } else { "sudo " };
-            format!("{sudo}apt-get update && {sudo}apt-get install -y --no-install-recommends {package}")
+            format!("{sudo}apt-get update && {sudo}apt-get install -y --no-install-recommends {packages}")
         }
     }
 }
