@@ -19,11 +19,6 @@ impl SplitCandidates {
     /// Every choice with its name on the command line.
     pub const ALL: [(&'static str, Self); 3] =
         [("uniform", Self::Uniform), ("bounds", Self::Bounds), ("sampled", Self::Sampled)];
-
-    /// The choice called `name`.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(n, _)| *n == name).map(|(_, c)| *c)
-    }
 }
 
 /// Options of all structures; each reads those that concern it.

@@ -34,13 +34,6 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// What both boxes hold; empty where they are apart.
-    #[inline]
-    #[must_use]
-    pub fn intersection(self, other: Self) -> Self {
-        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
-    }
-
     /// Whether the box holds no point.
     #[inline]
     pub fn is_empty(&self) -> bool {

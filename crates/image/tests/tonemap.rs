@@ -42,9 +42,13 @@ fn every_curve_survives_any_input() {
     }
 }
 
+fn curve(name: &str) -> Tonemap {
+    TONEMAPS.iter().find(|tonemap| tonemap.name == name).copied().expect("a name on the list")
+}
+
 #[test]
 fn curves_pass_their_published_points() {
-    let grey = |name: &str, light: f32| Tonemap::by_name(name).unwrap().map([light; 3])[1];
+    let grey = |name: &str, light: f32| curve(name).map([light; 3])[1];
     let near = |found: f32, expected: f32| assert!((found - expected).abs() < 2e-3, "{found} is not {expected}");
     near(grey("srgb", 0.5), 0.5);
     near(grey("srgb", 7.0), 1.0);
@@ -61,17 +65,15 @@ fn curves_pass_their_published_points() {
 
 #[test]
 fn reinhard_keeps_the_ratios_of_a_colour() {
-    let [r, g, b] = Tonemap::by_name("reinhard").unwrap().map([0.8, 0.4, 0.2]);
+    let [r, g, b] = curve("reinhard").map([0.8, 0.4, 0.2]);
     assert!((r / g - 2.0).abs() < 1e-5 && (g / b - 2.0).abs() < 1e-5);
 }
 
 #[test]
-fn names_are_found_and_distinct() {
+fn names_are_distinct() {
     for tonemap in TONEMAPS {
-        assert_eq!(Tonemap::by_name(&tonemap.name.to_uppercase()).unwrap().name, tonemap.name);
         assert_eq!(TONEMAPS.iter().filter(|other| other.name == tonemap.name).count(), 1);
         assert!(!tonemap.summary.is_empty());
     }
     assert_eq!(Tonemap::default().name, "srgb");
-    assert!(Tonemap::by_name("nonsense").is_none());
 }

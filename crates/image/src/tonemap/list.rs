@@ -22,12 +22,6 @@ pub const TONEMAPS: &[Tonemap] = &[
 ];
 
 impl Tonemap {
-    /// The curve of that name (hyphens, underscores and case do not matter).
-    pub fn by_name(name: &str) -> Option<Self> {
-        let wanted = name.to_lowercase().replace('_', "-");
-        TONEMAPS.iter().find(|tonemap| tonemap.name == wanted).copied()
-    }
-
     /// Linear scene light to linear display light, each channel in 0..1; encode the result with the sRGB curve.
     /// Negative and NaN channels count as 0, infinite ones as white.
     pub fn map(&self, rgb: [f32; 3]) -> [f32; 3] {

@@ -22,7 +22,7 @@ pub use fresnel::{fresnel_conductor, fresnel_dielectric, fresnel_diffuse_reflect
 pub use lobe_set::LobeSet;
 pub use materials::Materials;
 pub use members::{MATERIAL_KINDS, MaterialKind, material_kind};
-pub use scattering::{Bsdf, BsdfSample, DeltaChild};
+pub use scattering::{Bsdf, BsdfSample};
 pub use transport::{SurfaceModel, TransportMode};
 
 /// Microfacet roughness (alpha) up to which a surface counts as a perfect mirror or pane.

@@ -60,27 +60,6 @@ pub struct BsdfSample {
     pub eta: f32,
 }
 
-impl BsdfSample {
-    /// Whether the direction is the only one of its lobe.
-    #[inline]
-    pub fn is_delta(&self) -> bool {
-        LobeSet::DELTA.intersects(self.kind)
-    }
-}
-
-/// One direction out of the single ones that a surface sends light to.
-#[derive(Clone, Copy, Debug)]
-pub struct DeltaChild {
-    /// Unit direction in world space.
-    pub wi: Vec3,
-    /// Factor on what arrives from there.
-    pub weight: Vec3,
-    /// Whether it crosses the surface.
-    pub is_transmission: bool,
-    /// Index on the side of `wi` over index on the side of `wo`; 1 where no interface is crossed.
-    pub eta: f32,
-}
-
 /// Scattering at a point for one `wo`: made by [`Materials::resolve`](super::Materials::resolve).
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf {
@@ -123,11 +102,6 @@ impl Bsdf {
     #[inline]
     pub fn geometric_normal(&self) -> Vec3 {
         self.ng
-    }
-
-    /// Whether light that crosses here enters a medium of another index.
-    pub fn is_interface(&self) -> bool {
-        self.lobes().iter().any(|lobe| lobe.eta != 1.0)
     }
 
     #[inline]
@@ -185,14 +159,6 @@ impl Bsdf {
         sum
     }
 
-    /// Factor on the flux of a photon that arrived from `wi` in an estimate of the radiance towards `wo`: f, as the
-    /// photons' density already holds the cosine of the geometric normal, times |wi.ns| / |wi.ng|, so that estimates and
-    /// traced paths see the same shading normals.
-    pub fn gather(&self, set: LobeSet, wi: Vec3) -> Vec3 {
-        let value = self.eval(set, wi, TransportMode::Radiance);
-        value * bounded_ratio(1.0, self.ng.dot(wi).abs())
-    }
-
     /// Value without the cosine, where no lobe of `set` depends on direction: what a photon estimate may take out of
     /// its sum. None where some lobe does, or where there is none.
     pub fn constant(&self, set: LobeSet) -> Option<Vec3> {
@@ -234,9 +200,8 @@ impl Bsdf {
         let (lobe, probability, u_lobe) = self.choose(set, u_lobe)?;
         let frame = &self.frames[usize::from(lobe.frame)];
         if LobeSet::DELTA.intersects(lobe.set) {
-            let child = self.delta_child(lobe, mode);
-            let weight = child.weight / probability;
-            return Some(BsdfSample { wi: child.wi, weight, pdf: probability, kind: lobe.set, eta: child.eta });
+            let (wi, weight, eta) = self.delta_child(lobe, mode);
+            return Some(BsdfSample { wi, weight: weight / probability, pdf: probability, kind: lobe.set, eta });
         }
         let wanted = lobe.set & set;
         let drawn = lobe.sample(wanted, frame.wo, u_lobe, u)?;
@@ -285,12 +250,8 @@ impl Bsdf {
         chosen
     }
 
-    /// All single directions that the surface sends light to, for renderers that follow every one of them.
-    pub fn delta_children(&self, mode: TransportMode) -> impl Iterator<Item = DeltaChild> + '_ {
-        self.lobes().iter().filter(|lobe| LobeSet::DELTA.intersects(lobe.set)).map(move |l| self.delta_child(l, mode))
-    }
-
-    fn delta_child(&self, lobe: &Lobe, mode: TransportMode) -> DeltaChild {
+    /// The one direction of a delta lobe, its weight, and the index on its side over that on the side of `wo`.
+    fn delta_child(&self, lobe: &Lobe, mode: TransportMode) -> (Vec3, Vec3, f32) {
         let frame = &self.frames[usize::from(lobe.frame)];
         let wo = frame.wo;
         let is_transmission = matches!(lobe.kind, LobeKind::DeltaTransmission);
@@ -305,8 +266,7 @@ impl Bsdf {
             (local, self.pushed_to_side(frame.axes.to_world(local), -1.0))
         };
         let eta = if is_transmission { lobe.eta } else { 1.0 };
-        let weight = lobe.weight * self.mode_factor(frame, local, wi, lobe.eta, mode);
-        DeltaChild { wi, weight, is_transmission, eta }
+        (wi, lobe.weight * self.mode_factor(frame, local, wi, lobe.eta, mode), eta)
     }
 
     /// A single direction cannot be drawn anew: where interpolated normals bend it to the wrong side of the surface it is

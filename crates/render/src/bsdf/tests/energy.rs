@@ -132,7 +132,7 @@ fn weight_times_density_is_the_value() {
                         let mut s = sampler(t as u32, k);
                         let u = s.next_2d();
                         let Some(sample) = bsdf.sample(set, s.next_1d(), u, mode) else { continue };
-                        if sample.is_delta() {
+                        if sample.kind.intersects(LobeSet::DELTA) {
                             continue;
                         }
                         let (value, pdf) = (bsdf.eval(set, sample.wi, mode), bsdf.pdf(set, sample.wi));

@@ -75,8 +75,6 @@ fn importance_is_the_adjoint_of_radiance() {
                 if scale > 1e-4 {
                     assert!((a - b).abs().max_element() < 5e-3 * scale, "{} {light} {eye}: {a} {b}", subject.name);
                     compared += 1;
-                    let gathered = radiance.gather(LobeSet::ALL, light);
-                    assert!((gathered - b).abs().max_element() < 5e-3 * scale, "{}: {gathered} {b}", subject.name);
                 }
             }
         }

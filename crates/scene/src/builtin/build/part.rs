@@ -74,13 +74,6 @@ impl Part {
         self
     }
 
-    /// The part turned inside out.
-    pub fn flipped(mut self) -> Self {
-        self.mesh.normals.iter_mut().for_each(|n| *n = -*n);
-        self.mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        self
-    }
-
     /// The part with its texture coordinates multiplied.
     pub fn uv_scaled(mut self, u: f32, v: f32) -> Self {
         for uv in &mut self.mesh.uvs {
