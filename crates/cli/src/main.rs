@@ -1,5 +1,6 @@
 //! The command `photinus`: arguments in, exit codes out; the work is done by the library of the same name.
 
+mod allocator;
 mod args;
 mod commands;
 mod failure;
@@ -15,6 +16,7 @@ use std::time::Instant;
 
 fn main() -> ExitCode {
     let begun = Instant::now();
+    allocator::prepare();
     let outcome = match Cli::parse().command {
         Command::Render(args) => commands::render::run(&args, begun),
         Command::Info(args) => commands::info::run(&args),

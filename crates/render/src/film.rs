@@ -203,15 +203,34 @@ impl Film {
         mean
     }
 
-    /// Buffers that hold the sums of `passes` passes at most.
-    pub fn levels(passes: u32) -> u64 {
-        u64::from(32 - passes.max(1).leading_zeros())
+    /// Buffers that are held after `passes` passes: a sum for each one in their binary number, and the one that the last
+    /// addition of two sums left over.
+    pub fn held_after(passes: u32) -> u64 {
+        u64::from(passes.count_ones()) + u64::from(passes > 0 && passes.is_multiple_of(2))
+    }
+
+    /// The most that is held before any of `passes` passes.
+    pub fn held_before(passes: u32) -> u64 {
+        if passes < 2 { 0 } else { u64::from(passes.saturating_add(1).ilog2()) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_held_is_counted() {
+        let mut film = Film::new(1);
+        let held = |film: &Film| (film.levels.iter().flatten().count() + film.spare.len()) as u64;
+        let mut most = 0;
+        for passes in 1..140u32 {
+            most = most.max(held(&film));
+            let buffer = film.buffer();
+            film.add(buffer);
+            assert_eq!((Film::held_before(passes), Film::held_after(passes)), (most, held(&film)), "{passes} passes");
+        }
+    }
 
     #[test]
     fn sums_are_pairwise_and_complete() {

@@ -14,27 +14,53 @@ pub struct RenderMemory {
     pub lights: u64,
 }
 
-/// Bytes of a photon while its map is built: itself in its chunk, in order of emission, and in the map with its place
-/// there. Measured at 69 to 93 with one and two maps of 0.1 to 4 million photons: lists have room to grow.
-const PHOTON_BUILD_BYTES: u64 = 80;
+/// Bytes of a photon while its map is built: itself in order of emission, what it is sorted by, and in the map with its
+/// place there. Measured at 67 to 69 with 0.3 to 3 million photons.
+const PHOTON_BUILD_BYTES: u64 = 70;
 
 /// Bytes of a photon in a finished map: itself and its place there.
 const PHOTON_BYTES: u64 = 28;
 
-/// Buffers of the film while a picture is written, in quarters: the means, their layers and the encoded file, beside the
-/// one kept for the next pass.
-const WRITE_QUARTERS: u64 = 15;
+/// What the lists of single batches of photons leave behind with each thread for the next pass, at most.
+const LEFT_BYTES: u64 = 2 << 20;
+
+/// Buffers of the film while a picture is written, in halves: the means, their layers and the encoded file. Measured at
+/// 3.4 to 3.5 buffers.
+const WRITE_HALVES: u64 = 7;
+
+/// What is going to be rendered.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ahead {
+    /// Numbers on the film.
+    pub values: u64,
+    pub passes: u32,
+    /// The passes are a guess, as time decides.
+    pub is_guess: bool,
+    /// Photons stored by a pass.
+    pub stored: u64,
+    /// The photons of the first pass serve all.
+    pub maps_once: bool,
+    /// Bytes of tables.
+    pub lights: u64,
+}
 
 impl RenderMemory {
-    /// For `values` numbers on the film, `passes` passes and `stored` photons a pass: the largest of the three moments
-    /// that can be the peak.
-    pub(crate) fn predict(values: u64, passes: u32, stored: u64, lights: u64) -> Self {
+    /// The largest of the three moments that can be the peak.
+    pub(crate) fn predict(ahead: &Ahead) -> Self {
+        let &Ahead { values, passes, stored, lights, .. } = ahead;
         let buffer = values * 4;
-        let sums = Film::levels(passes) * buffer;
-        // One buffer is kept for the next pass throughout; the tiles of a pass are another one.
-        let map_build = Self { film: sums + buffer, photons: stored * PHOTON_BUILD_BYTES, lights };
-        let eye_pass = Self { film: sums + 2 * buffer, photons: stored * PHOTON_BYTES, lights };
-        let writing = Self { film: sums + buffer * WRITE_QUARTERS / 4, photons: 0, lights };
+        let before = Film::held_before(passes);
+        // A guess that is off by one pass may be off by all sums but one: their mean is not.
+        let after = if ahead.is_guess { before / 2 + 1 } else { Film::held_after(passes) };
+        let at_build = if ahead.maps_once { 0 } else { before };
+        let building = stored * PHOTON_BUILD_BYTES;
+        let most_left = if ahead.maps_once { 0 } else { LEFT_BYTES * rayon::current_num_threads() as u64 };
+        let left = (building / 4).min(most_left);
+        let map_build = Self { film: at_build * buffer, photons: building + left, lights };
+        // The pass's own buffer, and its tiles before they are put together.
+        let eye_pass = Self { film: (before + 2) * buffer, photons: stored * PHOTON_BYTES + left, lights };
+        let kept = if ahead.maps_once { stored * PHOTON_BYTES } else { left };
+        let writing = Self { film: after * buffer + buffer * WRITE_HALVES / 2, photons: kept, lights };
         [map_build, eye_pass, writing].into_iter().max_by_key(Self::total).unwrap_or_default()
     }
 

@@ -18,6 +18,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Photons of one batch; fixed, so that batches do not depend on the machine.
 const CHUNK: u32 = 2048;
 
+/// Batches of each thread between two appendings to the lists: what is held twice stays small. Photons do not depend on
+/// it.
+const GROUP: usize = 32;
+
 /// Which photons are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Keep {
@@ -65,28 +69,35 @@ impl PhotonPass {
         observer: &dyn Observer,
     ) -> Result<(StoredPhotons, Counters), Cancelled> {
         let chunks = self.count.div_ceil(CHUNK);
+        let group = GROUP * rayon::current_num_threads();
         let done = AtomicU64::new(0);
-        let results: Vec<Option<(StoredPhotons, Counters)>> = (0..chunks)
-            .into_par_iter()
-            .map(|chunk| {
-                if observer.cancelled() {
-                    return None;
-                }
-                let result = self.chunk(world, lights, chunk);
-                observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(chunks));
-                Some(result)
-            })
-            .collect();
         let mut all = StoredPhotons::default();
         let mut counters = Counters::default();
-        let results: Option<Vec<_>> = results.into_iter().collect();
-        let results = results.ok_or(Cancelled)?;
-        all.global.reserve_exact(results.iter().map(|(p, _)| p.global.len()).sum());
-        all.caustic.reserve_exact(results.iter().map(|(p, _)| p.caustic.len()).sum());
-        for (photons, c) in results {
-            all.global.extend(photons.global);
-            all.caustic.extend(photons.caustic);
-            counters += c;
+        for first in (0..chunks).step_by(group) {
+            let last = chunks.min(first.saturating_add(group as u32));
+            let results: Vec<Option<(StoredPhotons, Counters)>> = (first..last)
+                .into_par_iter()
+                .map(|chunk| {
+                    if observer.cancelled() {
+                        return None;
+                    }
+                    let result = self.chunk(world, lights, chunk);
+                    observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(chunks));
+                    Some(result)
+                })
+                .collect();
+            for result in results {
+                let (photons, c) = result.ok_or(Cancelled)?;
+                all.global.extend_from_slice(&photons.global);
+                all.caustic.extend_from_slice(&photons.caustic);
+                counters += c;
+            }
+            if first == 0 && last < chunks {
+                // The first group says what the others will add; a hundredth more is seldom needed.
+                let share = f64::from(chunks - last) / f64::from(last) * 1.01;
+                all.global.reserve_exact((all.global.len() as f64 * share) as usize);
+                all.caustic.reserve_exact((all.caustic.len() as f64 * share) as usize);
+            }
         }
         Ok((all, counters))
     }

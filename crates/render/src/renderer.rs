@@ -9,7 +9,7 @@ use crate::film::{Aov, Film, FilmLayout};
 use crate::film_filter::FilterSampler;
 use crate::light::Lights;
 use crate::maps::{Map, Maps};
-use crate::memory::RenderMemory;
+use crate::memory::{Ahead, RenderMemory};
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons};
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
@@ -153,11 +153,18 @@ impl<'w> Renderer<'w> {
         self.crop
     }
 
-    /// What the render will hold at its peak after `passes` passes, beside the world itself.
-    pub fn predicted_memory(&self, passes: u32) -> RenderMemory {
+    /// What the render will hold at its peak in `passes` passes, which may be a guess, beside the world itself.
+    pub fn predicted_memory(&self, passes: u32, is_guess: bool) -> RenderMemory {
         let stored = (f64::from(self.photons) * f64::from(self.stored_share)) as u64;
         let pixels = u64::from(self.crop[2]) * u64::from(self.crop[3]);
-        RenderMemory::predict(pixels * self.layout.channels() as u64, passes, stored, self.lights.bytes() as u64)
+        RenderMemory::predict(&Ahead {
+            values: pixels * self.layout.channels() as u64,
+            passes,
+            is_guess,
+            stored,
+            maps_once: matches!(self.settings.mode, Mode::Gather | Mode::Direct),
+            lights: self.lights.bytes() as u64,
+        })
     }
 
     /// Lights of the scene.

@@ -1,5 +1,5 @@
-//! `unsafe` is for SIMD kernels only: each file that holds any is listed with the test that compares it with its
-//! scalar twin.
+//! `unsafe` is for SIMD kernels and for settings that only the C library has: each file that holds any is listed with
+//! the test that compares a kernel with its scalar twin, or that sees what the setting does.
 
 use super::Finding;
 use super::rust_lines::split;
@@ -8,7 +8,7 @@ use super::tree::Tree;
 /// A file that may hold `unsafe` code.
 struct Kernel {
     path: &'static str,
-    /// File and function of the test that compares it with the scalar code.
+    /// File and function of the test that compares it with the scalar code, or sees its effect.
     twin_test: (&'static str, &'static str),
 }
 
@@ -19,7 +19,11 @@ const GRID_TWIN_TEST: (&str, &str) =
 const WIDE_TWIN_TEST: (&str, &str) =
     ("crates/accel/src/structures/wide_bvh/tests.rs", "all_kernels_give_the_same_bits_and_the_same_work");
 
+/// Without the setting memory grows from pass to pass.
+const ALLOCATOR_TEST: (&str, &str) = ("crates/cli/tests/memory.rs", "memory_stays_as_predicted_over_many_passes");
+
 const KERNELS: &[Kernel] = &[
+    Kernel { path: "crates/cli/src/allocator.rs", twin_test: ALLOCATOR_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx2.rs", twin_test: WIDE_TWIN_TEST },

@@ -61,7 +61,7 @@ impl MemoryPrediction {
         let [_, _, width, height] = renderer.window();
         let work = f64::from(width) * f64::from(height) + f64::from(renderer.photons());
         let passes = expected_passes(stop, work);
-        let render = renderer.predicted_memory(passes);
+        let render = renderer.predicted_memory(passes, stop.pass_limit() != Some(passes));
         let threads = rayon::current_num_threads() as u64;
         let held = world.geometry_bytes() as u64 + structure.bytes + world.texture_bytes() as u64;
         let now = resident();
