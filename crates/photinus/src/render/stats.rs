@@ -4,7 +4,7 @@ use super::memory::{MemoryPrediction, Owner};
 use super::stop::{Stop, StopReason};
 use crate::machine::{Machine, resident};
 use photinus_accel::StructureSummary;
-use photinus_render::{Counters, PhotonPower, RayCounts, Settings};
+use photinus_render::{Counters, PhotonCounts, PhotonPower, RayCounts, Settings};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -151,6 +151,8 @@ pub struct Stats {
     pub search: SearchStats,
     /// Photons.
     pub photons: PhotonStats,
+    /// Photons sent out for caustics alone.
+    pub caustic_photons: PhotonStats,
     /// Wall seconds of what is none of the phases, by function.
     pub other: BTreeMap<String, f64>,
     /// Memory.
@@ -225,8 +227,7 @@ impl SearchStats {
 }
 
 impl PhotonStats {
-    pub(super) fn of(counters: &Counters) -> Self {
-        let photons = &counters.photons;
+    pub(super) fn of(photons: &PhotonCounts) -> Self {
         Self {
             emitted: photons.emitted,
             stored: photons.stored,
