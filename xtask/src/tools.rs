@@ -22,6 +22,7 @@ struct Tool {
 
 const TOOLS: &[Tool] = &[
     Tool { name: "a C linker", probe: &["cc", "--version"], install: Install::Apt("gcc libc6-dev") },
+    Tool { name: "valgrind", probe: &["valgrind", "--version"], install: Install::Apt("valgrind") },
     Tool { name: "rustfmt", probe: &["cargo", "fmt", "--version"], install: Install::Rustup("rustfmt") },
     Tool { name: "clippy", probe: &["cargo", "clippy", "--version"], install: Install::Rustup("clippy") },
 ];
@@ -31,8 +32,9 @@ pub fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-/// Makes sure that every tool works (the one system package that is ever installed is the C linker, which rustc calls): installs what is missing where `install` gives consent, else fails with the
-/// lines that install it.
+/// Makes sure that every tool works: installs what is missing where `install` gives consent, else fails with the lines
+/// that install it. System packages that are ever installed are the C linker, which rustc calls, and valgrind, which
+/// counts instructions.
 pub fn ensure(install: bool) -> Result<(), Failure> {
     let missing: Vec<&Tool> = TOOLS.iter().filter(|tool| !works(tool)).collect();
     if missing.is_empty() {

@@ -3,7 +3,7 @@
 use crate::structures::kd_tree::KdTree;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
-use photinus_profile::{IntersectCounters, TraversalCounters};
+use photinus_profile::{IntersectCounters, RayTicks, TraversalCounters};
 use serde::Serialize;
 use std::ops::AddAssign;
 
@@ -14,6 +14,8 @@ pub struct RayCounters {
     pub intersect: IntersectCounters,
     /// Nodes and leaves.
     pub traversal: TraversalCounters,
+    /// How the time was split between the two; the only part that differs from run to run.
+    pub ticks: RayTicks,
 }
 
 impl RayCounters {
@@ -26,10 +28,35 @@ impl RayCounters {
     }
 }
 
+/// Runs tests, with stamps around them where `COUNT` says so.
+#[inline(always)]
+pub(crate) fn stamped<const COUNT: bool, T>(ticks: &mut RayTicks, tests: impl FnOnce() -> T) -> T {
+    if !COUNT {
+        return tests();
+    }
+    let begun = photinus_profile::ticks();
+    let out = tests();
+    ticks.tests += photinus_profile::ticks().wrapping_sub(begun);
+    ticks.pairs += 1;
+    out
+}
+
+/// Runs a batch of queries, with stamps around it where `COUNT` says so.
+#[inline(always)]
+pub(crate) fn stamped_batch<const COUNT: bool>(counters: &mut RayCounters, queries: impl FnOnce(&mut RayCounters)) {
+    if !COUNT {
+        return queries(counters);
+    }
+    let begun = photinus_profile::ticks();
+    queries(counters);
+    counters.ticks.total += photinus_profile::ticks().wrapping_sub(begun);
+}
+
 impl AddAssign for RayCounters {
     fn add_assign(&mut self, other: Self) {
         self.intersect += other.intersect;
         self.traversal += other.traversal;
+        self.ticks += other.ticks;
     }
 }
 
@@ -64,7 +91,8 @@ pub trait Structure: Send + Sync {
     /// Whether each ray hits anything within its interval; `occluded` is as long as `rays`.
     fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]);
 
-    /// As [`Structure::closest_hit`], with the work added to `counters`: the same hits, more slowly.
+    /// As [`Structure::closest_hit`], with the work and the ticks of the processor's clock added to `counters`: the same
+    /// hits, more slowly.
     fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters);
 
     /// As [`Structure::any_hit`], with the work added to `counters`.

@@ -164,7 +164,10 @@ fn answers_do_not_depend_on_the_batch_and_counting_changes_nothing() {
                 assert_eq!(any(&*structure, rays), whole_any[i * size..][..rays.len()], "{}", info.name);
                 structure.closest_hit_counted(rays, &mut vec![Hit::MISS; rays.len()], &mut parts);
             }
-            assert_eq!(parts, once, "{}", info.name);
+            assert_eq!((parts.intersect, parts.traversal), (once.intersect, once.traversal), "{}", info.name);
+            for ticks in [parts.ticks, once.ticks] {
+                assert!(0 < ticks.tests && ticks.tests <= ticks.total && ticks.pairs > 0, "{}: {ticks:?}", info.name);
+            }
         }
         structure.closest_hit(&[], &mut []);
         let t = once.traversal;

@@ -82,6 +82,17 @@ pub fn short(number: f64) -> String {
     if value < 9.95 && unit > 0 { format!("{value:.1}{}", UNITS[unit]) } else { format!("{value:.0}{}", UNITS[unit]) }
 }
 
+/// A short time for people: 15 ns, 3.2 us, 41 ms.
+pub fn nanoseconds(number: f64) -> String {
+    let (value, unit) = match number {
+        n if n < 999.5 => (n, "ns"),
+        n if n < 999_500.0 => (n / 1e3, "us"),
+        n if n < 999_500_000.0 => (n / 1e6, "ms"),
+        n => (n / 1e9, "s"),
+    };
+    if value < 9.95 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
+}
+
 /// Seconds for people: 0:07, 12:34, 3:00:00.
 pub fn duration(seconds: f64) -> String {
     let whole = seconds.max(0.0).ceil() as u64;
@@ -99,6 +110,8 @@ mod tests {
         assert_eq!([bytes(999_999), bytes(24_000_000), bytes(u64::MAX)], ["1.0 MB", "24 MB", "18447 PB"]);
         assert_eq!([short(0.0), short(7.0), short(1234.0), short(2.5e6)], ["0", "7", "1.2 k", "2.5 M"]);
         assert_eq!([duration(0.2), duration(61.0), duration(7200.5)], ["0:01", "1:01", "2:00:01"]);
+        assert_eq!([nanoseconds(7.04), nanoseconds(38_000.0)], ["7.0 ns", "38 us"]);
+        assert_eq!([nanoseconds(1.5e6), nanoseconds(2e10)], ["1.5 ms", "20 s"]);
         assert_eq!([count(0), count(999), count(1000), count(1_234_567)], ["0", "999", "1 000", "1 234 567"]);
     }
 }

@@ -5,16 +5,7 @@ use serde::Serialize;
 
 /// Processor time of all threads of this process so far, in seconds.
 pub fn cpu_seconds() -> f64 {
-    seconds(ClockId::ProcessCPUTime)
-}
-
-/// Processor time of the calling thread so far, in seconds.
-pub(crate) fn thread_cpu_seconds() -> f64 {
-    seconds(ClockId::ThreadCPUTime)
-}
-
-fn seconds(clock: ClockId) -> f64 {
-    let time = clock_gettime(clock);
+    let time = clock_gettime(ClockId::ProcessCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 

@@ -63,7 +63,7 @@ pub trait Search: Send + Sync {
     /// threads or the vector width. Large batches use the threads of the current rayon pool.
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]);
 
-    /// As [`Search::gather`] with the work counted: the same results, more slowly.
+    /// As [`Search::gather`] with the work counted: the same results, more slowly, all on the calling thread.
     fn gather_counted(
         &self,
         queries: &[GatherQuery],
@@ -76,11 +76,24 @@ pub trait Search: Send + Sync {
     /// order that depends on nothing but the photons; for surfaces whose scattering depends on the photon's direction.
     fn visit(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32));
 
+    /// As [`Search::visit`], with the work added to `counters`.
+    fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters);
+
     /// All photons within `radius` of `position` (closed), in ascending id; `found` is cleared first.
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>);
 
     /// The `k` nearest photons within `radius`, by distance, ties by id; `found` is cleared first.
     fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>);
+
+    /// As [`Search::nearest`], with the work added to `counters`; those found are those handed out.
+    fn nearest_counted(
+        &self,
+        position: Vec3,
+        k: usize,
+        radius: f32,
+        found: &mut Vec<Neighbor>,
+        counters: &mut SearchCounters,
+    );
 
     /// The photon of an id.
     ///

@@ -1,7 +1,8 @@
 //! Gathering by visiting: for members without a kernel of their own.
 
-use crate::{GatherQuery, Gathered, Kernel, Search};
+use crate::{GatherQuery, Gathered, Kernel, Photon, Search};
 use photinus_geometry::Vec3;
+use photinus_profile::SearchCounters;
 use rayon::prelude::*;
 
 /// Queries that are worth a task of their own.
@@ -9,16 +10,46 @@ const QUERIES_A_TASK: usize = 256;
 
 /// Sums what `search` visits, in f64 in the order of the visits, rounded once.
 pub(crate) fn gather_by_visiting(search: &dyn Search, query: &GatherQuery, kernel: Kernel) -> Gathered {
-    let mut flux = [0f64; 3];
-    let mut count = 0;
-    search.visit(query, &mut |photon, d2| {
-        let weight = f64::from(kernel.weight(d2, query.radius));
-        for (sum, channel) in flux.iter_mut().zip(photon.flux().to_array()) {
-            *sum += f64::from(channel) * weight;
+    let mut sums = Sums::default();
+    search.visit(query, &mut |photon, d2| sums.add(photon, kernel.weight(d2, query.radius)));
+    sums.gathered()
+}
+
+/// As [`gather_by_visiting`] for a batch on this thread, with the work counted.
+pub(crate) fn gather_counted_by_visiting(
+    search: &dyn Search,
+    queries: &[GatherQuery],
+    kernel: Kernel,
+    out: &mut [Gathered],
+    counters: &mut SearchCounters,
+) {
+    assert_eq!(queries.len(), out.len(), "one result a query");
+    for (query, out) in queries.iter().zip(out) {
+        let mut sums = Sums::default();
+        let mut visit = |photon: &Photon, d2| sums.add(photon, kernel.weight(d2, query.radius));
+        search.visit_counted(query, &mut visit, counters);
+        *out = sums.gathered();
+    }
+}
+
+/// Flux summed in f64.
+#[derive(Default)]
+struct Sums {
+    flux: [f64; 3],
+    count: u32,
+}
+
+impl Sums {
+    fn add(&mut self, photon: &Photon, weight: f32) {
+        for (sum, channel) in self.flux.iter_mut().zip(photon.flux().to_array()) {
+            *sum += f64::from(channel) * f64::from(weight);
         }
-        count += 1;
-    });
-    Gathered { flux: Vec3::from_array(flux.map(|c| c as f32)), count }
+        self.count += 1;
+    }
+
+    fn gathered(self) -> Gathered {
+        Gathered { flux: Vec3::from_array(self.flux.map(|c| c as f32)), count: self.count }
+    }
 }
 
 /// As [`gather_by_visiting`] for a batch, on the threads of the current pool where the batch is large.

@@ -76,9 +76,27 @@ fn visit_hands_out_what_gather_sums() {
                 found.sort_unstable();
                 expected.sort_unstable();
                 assert_eq!(found, expected, "{context}: {query:?}");
+                let (mut counted, mut counters) = (Vec::new(), SearchCounters::default());
+                search.visit_counted(
+                    query,
+                    &mut |photon, d2| counted.push((photon.to_words(), d2.to_bits())),
+                    &mut counters,
+                );
+                counted.sort_unstable();
+                assert_eq!(counted, expected, "{context}: counted, {query:?}");
+                assert_counts(&counters, expected.len(), set.photons.len(), context);
             }
         });
     }
+}
+
+/// One search that found so many of so many photons.
+#[track_caller]
+fn assert_counts(counters: &SearchCounters, found: usize, photons: usize, context: &str) {
+    assert_eq!((counters.searches, counters.photons_found), (1, found as u64), "{context}");
+    // A search for the nearest may look at some photons in more than one ball.
+    let most = 40 * photons as u64;
+    assert!((counters.photons_found..=most).contains(&counters.photons_tested), "{context}: {counters:?}");
 }
 
 #[test]
@@ -110,6 +128,10 @@ fn neighbors_agree_with_the_oracle_bit_for_bit() {
                         search.nearest(query.position, k, radius, &mut found);
                         let expected = &by_distance[..k.min(by_distance.len())];
                         assert_eq!(found, expected, "{context}: {k} nearest within {radius}, {query:?}");
+                        let mut counters = SearchCounters::default();
+                        search.nearest_counted(query.position, k, radius, &mut found, &mut counters);
+                        assert_eq!(found, expected, "{context}: {k} nearest, counted");
+                        assert_counts(&counters, found.len(), set.photons.len(), context);
                     }
                 }
             }

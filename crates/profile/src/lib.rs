@@ -4,5 +4,14 @@
 //! seconds as their names say.
 
 mod counters;
+mod profile;
+mod thread_time;
+mod ticks;
 
-pub use counters::{IntersectCounters, SearchCounters, TraversalCounters};
+pub use counters::{EstimateTicks, IntersectCounters, RayTicks, SearchCounters, TraversalCounters};
+pub use profile::{
+    AccelProfile, IntersectProfile, PhotonProfile, Profile, ProfileSeconds, RayProfile, Row, SearchProfile,
+    accelerated_share,
+};
+pub use thread_time::{thread_nanoseconds, undisturbed};
+pub use ticks::{ticks, ticks_of_a_stamp};

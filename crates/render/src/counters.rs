@@ -1,9 +1,13 @@
 //! What a render counts.
 
 use photinus_accel::RayCounters;
-use photinus_profile::SearchCounters;
+use photinus_profile::{EstimateTicks, SearchCounters, thread_nanoseconds};
 use serde::Serialize;
 use std::ops::AddAssign;
+
+macro_rules! add {
+    ($a:expr, $b:expr; $($field:ident),*) => { $($a.$field += $b.$field;)* };
+}
 
 /// Rays by their purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -20,6 +24,15 @@ pub struct RayCounts {
     pub shadow: u64,
     /// Rays from a diffuse surface that look for lights, to weight against shadow rays.
     pub gather: u64,
+    /// Any of these once more, from behind a hole that let it through.
+    pub beyond: u64,
+}
+
+impl RayCounts {
+    /// All rays traced.
+    pub fn total(&self) -> u64 {
+        self.photon + self.camera + self.specular + self.shadow + self.gather + self.beyond
+    }
 }
 
 /// Where the power of the photons went, W, RGB. Emitted = absorbed + escaped + cut.
@@ -56,48 +69,66 @@ pub struct PhotonCounts {
     pub power: PhotonPower,
 }
 
+/// Where the threads' processor time went, nanoseconds. What is left of it is in no list: camera rays, films, lists.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Spent {
+    /// Ray queries: tests and traversal.
+    pub rays: u64,
+    /// Estimates from photons: searches, and what weighs the photons found.
+    pub estimates: u64,
+    /// Where rays land: surface points, textures, materials, scattering, light sampling.
+    pub surfaces: u64,
+}
+
+impl AddAssign for Spent {
+    fn add_assign(&mut self, other: Self) {
+        add!(self, other; rays, estimates, surfaces);
+    }
+}
+
+/// Does work and, where the render is profiled, adds the thread's processor time to `nanoseconds`.
+pub(crate) fn timed<T>(profiled: bool, nanoseconds: &mut u64, work: impl FnOnce() -> T) -> T {
+    if !profiled {
+        return work();
+    }
+    let begun = thread_nanoseconds();
+    let out = work();
+    *nanoseconds += thread_nanoseconds().saturating_sub(begun);
+    out
+}
+
 /// Everything that a render counts; merged in a fixed order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counters {
     /// Rays, all of them.
     pub rays: RayCounts,
-    /// Photons, all of them but those sent out for caustics alone.
+    /// Photons, all of them.
     pub photons: PhotonCounts,
-    /// Photons sent out for caustics alone: they end (absorbed) where they can no longer belong to one.
-    pub caustic_photons: PhotonCounts,
     /// Estimates from photons, all of them.
     pub searches: u64,
     /// Photons that they found.
     pub photons_found: u64,
-    /// Work of the rays of the instrumented batches.
+    /// Work of the rays that ran the instrumented twin.
     pub sampled_rays: RayCounters,
-    /// Work of the searches of the instrumented batches.
+    /// Work of the searches that did.
     pub sampled_searches: SearchCounters,
-}
-
-macro_rules! add {
-    ($a:expr, $b:expr; $($field:ident),*) => { $($a.$field += $b.$field;)* };
-}
-
-impl AddAssign for PhotonCounts {
-    fn add_assign(&mut self, other: Self) {
-        add!(self, other; emitted, stored, stored_caustic, absorbed, escaped, cut);
-        for c in 0..3 {
-            self.power.emitted[c] += other.power.emitted[c];
-            self.power.absorbed[c] += other.power.absorbed[c];
-            self.power.escaped[c] += other.power.escaped[c];
-            self.power.cut[c] += other.power.cut[c];
-            self.power.stored[c] += other.power.stored[c];
-        }
-    }
+    /// How their time was split between search and the rest.
+    pub sampled_estimates: EstimateTicks,
+    /// Processor time of all queries; with ticks the only part that differs from run to run.
+    pub spent: Spent,
 }
 
 impl AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
-        add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather);
-        add!(self, other; photons, caustic_photons, searches, photons_found, sampled_rays, sampled_searches);
+        add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather, beyond);
+        add!(self.photons, other.photons; emitted, stored, stored_caustic, absorbed, escaped, cut);
+        for c in 0..3 {
+            self.photons.power.emitted[c] += other.photons.power.emitted[c];
+            self.photons.power.absorbed[c] += other.photons.power.absorbed[c];
+            self.photons.power.escaped[c] += other.photons.power.escaped[c];
+            self.photons.power.cut[c] += other.photons.power.cut[c];
+            self.photons.power.stored[c] += other.photons.power.stored[c];
+        }
+        add!(self, other; searches, photons_found, sampled_rays, sampled_searches, sampled_estimates, spent);
     }
 }
-
-/// One batch in this many runs the instrumented twin of the kernels.
-pub(crate) const INSTRUMENTED: usize = 64;

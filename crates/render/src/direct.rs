@@ -3,11 +3,12 @@
 
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::control::{Cancelled, Observer};
-use crate::counters::{Counters, INSTRUMENTED};
+use crate::counters::{Counters, timed};
 use crate::eye_pass::{EyePass, Tile};
 use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
 use crate::trace::Tracer;
-use photinus_geometry::{Ray, Vec3};
+use crate::twin::Queries;
+use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
 
@@ -44,8 +45,8 @@ impl EyePass<'_> {
         observer: &dyn Observer,
     ) -> u32 {
         let [x0, y0, w, h] = window;
-        let instrumented = (index as usize).is_multiple_of(INSTRUMENTED);
-        let mut tracer = Tracer::new(self.world, instrumented);
+        let mut tracer = Tracer::new(self.world, self.twin(Queries::EyeRays, index));
+        let mut twin = self.twin(Queries::Estimates, index);
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
         let mut scratch = EstimateScratch::default();
         let mut found: Vec<Estimated> = Vec::new();
@@ -76,57 +77,14 @@ impl EyePass<'_> {
                 });
                 let mut estimates = Vec::new();
                 let mut next = Vec::new();
-                for (node, hit) in nodes.iter().zip(&hits) {
-                    if !hit.is_hit() {
-                        let radiance = self.lights.environment_radiance(node.ray.dir);
-                        tile.emitted(node.pixel, node.throughput * radiance);
-                        continue;
+                timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
+                    for (node, hit) in nodes.iter().zip(&hits) {
+                        let sampler = || self.node_sampler(node, x0, y0, w, sample);
+                        self.branch(node, hit, sampler, tile, &mut next, &mut estimates);
                     }
-                    let width = node.width + node.spread * hit.t;
-                    let point = self.world.surface(&node.ray, hit, width);
-                    let wo = -node.ray.dir;
-                    tile.emitted(node.pixel, node.throughput * self.world.emitted(&point, wo));
-                    let material = self.world.shapes[point.shape as usize].material;
-                    let bsdf = self.world.materials.resolve(material, &point, wo);
-                    if node.level == 0 {
-                        self.first_surface(node.pixel, hit.t, &point, &bsdf, material.0, tile);
-                    }
-                    if bsdf.has(LobeSet::GATHER) {
-                        let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
-                        estimates.push(Estimate {
-                            query: GatherQuery {
-                                position: point.position,
-                                radius: 0.0,
-                                normal: point.geometric_normal * side,
-                                max_depth: 127,
-                            },
-                            bsdf,
-                            throughput: node.throughput,
-                            path: node.pixel,
-                        });
-                    }
-                    if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {
-                        continue;
-                    }
-                    let mut sampler = self.node_sampler(node, x0, y0, w, sample);
-                    sampler.start_vertex();
-                    for (child, side) in [LobeSet::REFLECTION, LobeSet::TRANSMISSION].into_iter().enumerate() {
-                        let (choice, u) = (sampler.next_1d(), sampler.next_2d());
-                        let set = LobeSet::CONTINUE & side;
-                        let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { continue };
-                        next.push(Node {
-                            ray: Ray::new(point.ray_origin(s.wi), s.wi),
-                            throughput: node.throughput * s.weight,
-                            pixel: node.pixel,
-                            level: node.level + 1,
-                            number: node.number * 2 + child as u64,
-                            width,
-                            spread: node.spread,
-                        });
-                    }
-                }
+                });
                 counters.rays.specular += next.len() as u64;
-                maps.global.estimate(&estimates, maps.knn, instrumented, &mut scratch, &mut found, counters);
+                maps.global.estimate(&estimates, maps.knn, &mut twin, &mut scratch, &mut found, counters);
                 for (e, found) in estimates.iter().zip(&found) {
                     tile.estimated(e.path, found);
                 }
@@ -134,6 +92,65 @@ impl EyePass<'_> {
             }
         }
         self.spp
+    }
+
+    /// What a ray finds where it ends: light, an estimate to be made, and a reflected and a transmitted ray.
+    fn branch(
+        &self,
+        node: &Node,
+        hit: &Hit,
+        sampler: impl FnOnce() -> Sampler,
+        tile: &mut Tile,
+        next: &mut Vec<Node>,
+        estimates: &mut Vec<Estimate>,
+    ) {
+        if !hit.is_hit() {
+            let radiance = self.lights.environment_radiance(node.ray.dir);
+            tile.emitted(node.pixel, node.throughput * radiance);
+            return;
+        }
+        let width = node.width + node.spread * hit.t;
+        let point = self.world.surface(&node.ray, hit, width);
+        let wo = -node.ray.dir;
+        tile.emitted(node.pixel, node.throughput * self.world.emitted(&point, wo));
+        let material = self.world.shapes[point.shape as usize].material;
+        let bsdf = self.world.materials.resolve(material, &point, wo);
+        if node.level == 0 {
+            self.first_surface(node.pixel, hit.t, &point, &bsdf, material.0, tile);
+        }
+        if bsdf.has(LobeSet::GATHER) {
+            let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
+            estimates.push(Estimate {
+                query: GatherQuery {
+                    position: point.position,
+                    radius: 0.0,
+                    normal: point.geometric_normal * side,
+                    max_depth: 127,
+                },
+                bsdf,
+                throughput: node.throughput,
+                path: node.pixel,
+            });
+        }
+        if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {
+            return;
+        }
+        let mut sampler = sampler();
+        sampler.start_vertex();
+        for (child, side) in [LobeSet::REFLECTION, LobeSet::TRANSMISSION].into_iter().enumerate() {
+            let (choice, u) = (sampler.next_1d(), sampler.next_2d());
+            let set = LobeSet::CONTINUE & side;
+            let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { continue };
+            next.push(Node {
+                ray: Ray::new(point.ray_origin(s.wi), s.wi),
+                throughput: node.throughput * s.weight,
+                pixel: node.pixel,
+                level: node.level + 1,
+                number: node.number * 2 + child as u64,
+                width,
+                spread: node.spread,
+            });
+        }
     }
 
     fn node_sampler(&self, node: &Node, x0: u32, y0: u32, w: u32, sample: u32) -> Sampler {

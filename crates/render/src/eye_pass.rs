@@ -5,12 +5,13 @@ use crate::SurfacePoint;
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::camera::CameraModel;
 use crate::control::{Cancelled, Observer};
-use crate::counters::{Counters, INSTRUMENTED};
+use crate::counters::{Counters, timed};
 use crate::film::{Aov, FilmLayout};
 use crate::film_filter::FilterSampler;
 use crate::light::Lights;
 use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
 use crate::trace::{Tracer, shadow_ray};
+use crate::twin::{Queries, Twin};
 use crate::world::World;
 use photinus_geometry::{Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
@@ -39,6 +40,8 @@ pub(crate) struct EyePass<'a> {
     pub maps: Option<&'a Maps>,
     /// A ray from each diffuse surface looks for lights too, weighted against the shadow ray.
     pub probe: bool,
+    /// One query in this many is counted, see [`Twin`].
+    pub profile_every: u32,
 }
 
 /// Which picture a contribution belongs to.
@@ -147,8 +150,8 @@ impl EyePass<'_> {
     /// the pass. Where it is stopped, tiles that have any sample are there, as means over those.
     pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
         self.run_tiles(film, observer, |x0, y0, w, h, index, tile, counters| {
-            let instrumented = (index as usize).is_multiple_of(INSTRUMENTED);
-            let mut tracer = Tracer::new(self.world, instrumented);
+            let mut tracer = Tracer::new(self.world, self.twin(Queries::EyeRays, index));
+            let mut twin = self.twin(Queries::Estimates, index);
             for sample in 0..self.spp {
                 if observer.cancelled() {
                     return sample;
@@ -156,7 +159,7 @@ impl EyePass<'_> {
                 let paths = self.camera_paths(x0, y0, w, h, sample, tile);
                 counters.rays.camera += paths.len() as u64;
                 let estimates = self.follow(paths, tile, &mut tracer, counters);
-                self.gather(&estimates, instrumented, tile, counters);
+                self.gather(&estimates, &mut twin, tile, counters);
             }
             self.spp
         })
@@ -221,6 +224,11 @@ impl EyePass<'_> {
         if complete { Ok(counters) } else { Err(Cancelled) }
     }
 
+    /// Which queries of a tile are counted.
+    pub(crate) fn twin(&self, queries: Queries, tile: u32) -> Twin {
+        Twin::new(self.profile_every, queries, self.pass, tile)
+    }
+
     pub(crate) fn camera_paths(&self, x0: u32, y0: u32, w: u32, h: u32, sample: u32, tile: &mut Tile) -> Vec<Path> {
         let mut paths = Vec::with_capacity((w * h) as usize);
         for pixel in 0..w * h {
@@ -267,15 +275,17 @@ impl EyePass<'_> {
             tracer.closest(&rays, &mut hits, counters, |i| paths[i].sampler.next_1d());
             let mut next = Vec::with_capacity(paths.len());
             shadows.clear();
-            for (path, hit) in paths.into_iter().zip(&hits) {
-                if hit.is_hit() {
-                    let width = path.width + path.spread * hit.t;
-                    let point = self.world.surface(&path.ray, hit, width);
-                    self.shade(path, hit.t, &point, tile, &mut next, &mut shadows, &mut estimates);
-                } else {
-                    self.escape(&path, tile);
+            timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
+                for (path, hit) in paths.into_iter().zip(&hits) {
+                    if hit.is_hit() {
+                        let width = path.width + path.spread * hit.t;
+                        let point = self.world.surface(&path.ray, hit, width);
+                        self.shade(path, hit.t, &point, tile, &mut next, &mut shadows, &mut estimates);
+                    } else {
+                        self.escape(&path, tile);
+                    }
                 }
-            }
+            });
             shadow_rays.clear();
             shadow_rays.extend(shadows.iter().map(|s: &Shadow| s.ray));
             counters.rays.shadow += shadow_rays.len() as u64;
@@ -494,17 +504,17 @@ impl EyePass<'_> {
     }
 
     /// Answers the estimates of a batch from the maps.
-    fn gather(&self, estimates: &[Estimate], instrumented: bool, tile: &mut Tile, counters: &mut Counters) {
+    fn gather(&self, estimates: &[Estimate], twin: &mut Twin, tile: &mut Tile, counters: &mut Counters) {
         let Some(maps) = self.maps else { return };
         let mut scratch = EstimateScratch::default();
         let mut out: Vec<Estimated> = Vec::new();
-        maps.global.estimate(estimates, maps.knn, instrumented, &mut scratch, &mut out, counters);
+        maps.global.estimate(estimates, maps.knn, twin, &mut scratch, &mut out, counters);
         for (e, found) in estimates.iter().zip(&out) {
             tile.add(e.path, Part::Indirect, found.radiance);
             tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
         }
         if let Some(caustic) = &maps.caustic {
-            caustic.estimate(estimates, maps.knn, instrumented, &mut scratch, &mut out, counters);
+            caustic.estimate(estimates, maps.knn, twin, &mut scratch, &mut out, counters);
             for (e, found) in estimates.iter().zip(&out) {
                 tile.add(e.path, Part::Caustic, found.radiance);
                 tile.add_scalar(e.path, Aov::PhotonDensity, found.density);

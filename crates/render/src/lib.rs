@@ -6,7 +6,6 @@
 
 pub mod bsdf;
 mod camera;
-mod caustic_plan;
 mod control;
 mod counters;
 mod direct;
@@ -24,15 +23,16 @@ mod settings;
 mod surface;
 pub mod texture;
 mod trace;
+mod twin;
 mod world;
 
 pub use camera::{CameraModel, CameraRay};
 pub use control::{Cancelled, Observer, Phase, Silent};
-pub use counters::{Counters, PhotonCounts, PhotonPower, RayCounts};
+pub use counters::{Counters, PhotonCounts, PhotonPower, RayCounts, Spent};
 pub use film::{Aov, Film, FilmLayout};
 pub use light::{LightSample, Lights, PhotonStart, VisibleRegion};
 pub use memory::RenderMemory;
-pub use renderer::{RenderError, Renderer, SearchBuilder};
+pub use renderer::{RenderError, Renderer};
 pub use settings::{Mode, Settings};
 pub use surface::SurfacePoint;
 pub use world::{Compiled, World};

@@ -1,9 +1,11 @@
 //! Photon maps and the radiance estimate from them.
 
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
-use crate::counters::Counters;
+use crate::counters::{Counters, timed};
+use crate::twin::Twin;
 use photinus_geometry::Vec3;
-use photinus_photons::{GatherQuery, Gathered, Kernel, Neighbor, Search};
+use photinus_photons::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search};
+use photinus_profile::{SearchCounters, ticks, undisturbed};
 
 /// One photon map with its gather radius.
 pub(crate) struct Map {
@@ -45,6 +47,7 @@ pub(crate) struct EstimateScratch {
     slots: Vec<usize>,
     gathered: Vec<Gathered>,
     neighbors: Vec<Neighbor>,
+    visited: Vec<(Photon, f32)>,
 }
 
 impl Map {
@@ -54,7 +57,7 @@ impl Map {
         &self,
         estimates: &[Estimate],
         knn: Option<u32>,
-        instrumented: bool,
+        twin: &mut Twin,
         scratch: &mut EstimateScratch,
         out: &mut Vec<Estimated>,
         counters: &mut Counters,
@@ -62,29 +65,56 @@ impl Map {
         out.clear();
         out.resize(estimates.len(), Estimated::default());
         counters.searches += estimates.len() as u64;
+        let mut nanoseconds = 0;
+        timed(twin.is_on(), &mut nanoseconds, || {
+            for (run, counted) in twin.runs(estimates.len()) {
+                let (estimates, out) = (&estimates[run.clone()], &mut out[run]);
+                if counted {
+                    let before = counters.sampled_estimates;
+                    let steady = undisturbed(|| {
+                        let begun = ticks();
+                        self.estimate_run::<true>(estimates, knn, scratch, out, counters);
+                        counters.sampled_estimates.total += ticks().wrapping_sub(begun);
+                    });
+                    if !steady {
+                        counters.sampled_estimates = before;
+                    }
+                } else {
+                    self.estimate_run::<false>(estimates, knn, scratch, out, counters);
+                }
+            }
+        });
+        counters.spent.estimates += nanoseconds;
+    }
+
+    /// The estimates of a run, counted and stamped where `COUNT` says so.
+    fn estimate_run<const COUNT: bool>(
+        &self,
+        estimates: &[Estimate],
+        knn: Option<u32>,
+        scratch: &mut EstimateScratch,
+        out: &mut [Estimated],
+        counters: &mut Counters,
+    ) {
         scratch.queries.clear();
         scratch.slots.clear();
         for (i, e) in estimates.iter().enumerate() {
             let query = GatherQuery { radius: self.radius_for(e.query.radius), ..e.query };
             let constant = e.bsdf.constant(LobeSet::GATHER);
             if let Some(k) = knn {
-                out[i] = self.nearest(e, &query, k as usize, &mut scratch.neighbors, counters);
+                out[i] = self.nearest::<COUNT>(e, &query, k as usize, &mut scratch.neighbors, counters);
             } else if constant.is_some() {
                 scratch.queries.push(query);
                 scratch.slots.push(i);
             } else {
-                out[i] = self.each(e, &query, counters);
+                out[i] = self.each::<COUNT>(e, &query, &mut scratch.visited, counters);
             }
         }
         scratch.gathered.clear();
         scratch.gathered.resize(scratch.queries.len(), Gathered::default());
-        if instrumented {
-            self.search.gather_counted(
-                &scratch.queries,
-                self.kernel,
-                &mut scratch.gathered,
-                &mut counters.sampled_searches,
-            );
+        if COUNT {
+            let (queries, gathered) = (&scratch.queries, &mut scratch.gathered);
+            stamped(counters, |counted| self.search.gather_counted(queries, self.kernel, gathered, counted));
         } else {
             self.search.gather(&scratch.queries, self.kernel, &mut scratch.gathered);
         }
@@ -105,15 +135,31 @@ impl Map {
         self.radius.max(pixel.min(3.0 * self.radius))
     }
 
-    /// Scattering that depends on where the photons come from: each photon by itself.
-    fn each(&self, e: &Estimate, query: &GatherQuery, counters: &mut Counters) -> Estimated {
+    /// Scattering that depends on where the photons come from: each photon by itself. The twin finds all of them first,
+    /// so that a stamp can stand between the search and the rest; the sums are the same.
+    fn each<const COUNT: bool>(
+        &self,
+        e: &Estimate,
+        query: &GatherQuery,
+        visited: &mut Vec<(Photon, f32)>,
+        counters: &mut Counters,
+    ) -> Estimated {
         let mut sum = Vec3::ZERO;
         let mut count = 0u32;
-        self.search.visit(query, &mut |photon, distance_sq| {
+        let mut add = |photon: &Photon, distance_sq: f32| {
             let weight = self.kernel.weight(distance_sq, query.radius);
             sum += scattered(e, photon.direction()) * photon.flux() * weight;
             count += 1;
-        });
+        };
+        if COUNT {
+            visited.clear();
+            stamped(counters, |counted| {
+                self.search.visit_counted(query, &mut |photon, d2| visited.push((*photon, d2)), counted);
+            });
+            visited.iter().for_each(|(photon, d2)| add(photon, *d2));
+        } else {
+            self.search.visit(query, &mut add);
+        }
         counters.photons_found += u64::from(count);
         Estimated {
             radiance: e.throughput * sum / self.kernel.area(query.radius),
@@ -122,7 +168,7 @@ impl Map {
     }
 
     /// The `k` nearest photons at most; where the cap bites, the area is that of the farthest one taken.
-    fn nearest(
+    fn nearest<const COUNT: bool>(
         &self,
         e: &Estimate,
         query: &GatherQuery,
@@ -130,7 +176,13 @@ impl Map {
         neighbors: &mut Vec<Neighbor>,
         counters: &mut Counters,
     ) -> Estimated {
-        self.search.nearest(query.position, k, query.radius, neighbors);
+        if COUNT {
+            stamped(counters, |counted| {
+                self.search.nearest_counted(query.position, k, query.radius, neighbors, counted);
+            });
+        } else {
+            self.search.nearest(query.position, k, query.radius, neighbors);
+        }
         counters.photons_found += neighbors.len() as u64;
         let radius = if neighbors.len() == k {
             neighbors.last().map_or(query.radius, |n| n.distance_sq.sqrt())
@@ -151,6 +203,13 @@ impl Map {
             density: neighbors.len() as f32 / (std::f32::consts::PI * radius * radius).max(1e-20),
         }
     }
+}
+
+/// Runs a counted search between two stamps.
+fn stamped(counters: &mut Counters, search: impl FnOnce(&mut SearchCounters)) {
+    let begun = ticks();
+    search(&mut counters.sampled_searches);
+    counters.sampled_estimates.searches += ticks().wrapping_sub(begun);
 }
 
 /// Scattering without the cosine: the density of photons already counts it.

@@ -1,7 +1,6 @@
 //! A render, pass by pass: photon pass, map build, eye pass, film.
 
 use crate::camera::CameraModel;
-use crate::caustic_plan::CausticPlan;
 use crate::control::{Cancelled, Observer, Phase};
 use crate::counters::Counters;
 use crate::direct::DEFAULT_LEVELS;
@@ -11,12 +10,12 @@ use crate::film_filter::FilterSampler;
 use crate::light::Lights;
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
-use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
+use crate::photon_pass::{Keep, PhotonPass, StoredPhotons};
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
 use crate::world::World;
 use photinus_num::StreamKind;
-use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError, Search};
+use photinus_photons::{BuildOptions, Kernel, PhotonError};
 
 /// Shrinking of the radius, Knaus and Zwicker 2011, section 5: the area falls by (i + ALPHA) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
@@ -32,15 +31,10 @@ pub enum RenderError {
     Photons(#[from] PhotonError),
 }
 
-/// Builds a photon search, by its name, over the photons of a pass.
-pub type SearchBuilder<'w> =
-    dyn Fn(&str, Vec<Photon>, &BuildOptions) -> Result<Box<dyn Search>, PhotonError> + Send + Sync + 'w;
-
 /// A running render.
 pub struct Renderer<'w> {
     world: &'w World,
     settings: Settings,
-    build_search: Box<SearchBuilder<'w>>,
     layout: FilmLayout,
     camera: CameraModel,
     filter: FilterSampler,
@@ -49,10 +43,8 @@ pub struct Renderer<'w> {
     photons: u32,
     lights: Lights,
     radii: Radii,
-    /// Photons of their own for caustics.
-    caustics: Option<CausticPlan>,
-    /// Photons stored by a pass, by the pilot.
-    stored: u64,
+    /// Photons stored for each one emitted, by the pilot.
+    stored_share: f32,
     /// Light covers so much of the view that diffuse surfaces look for it by chance too.
     probe: bool,
     /// Maps that all passes share, in the modes with one photon map.
@@ -85,7 +77,6 @@ impl<'w> Renderer<'w> {
         let lights = Lights::new(world, pilot::visible_region(world, &points), &view);
         let mut renderer = Self {
             world,
-            build_search: Box::new(photinus_photons::build),
             layout,
             camera,
             filter: FilterSampler::new(world.film.filter),
@@ -95,8 +86,7 @@ impl<'w> Renderer<'w> {
             probe: lights.has_environment() || view.light_is_wide(),
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
-            caustics: None,
-            stored: 0,
+            stored_share: 0.0,
             shared_maps: None,
             film: Film::new(0),
             partial: None,
@@ -106,20 +96,15 @@ impl<'w> Renderer<'w> {
         renderer.film = Film::new(pixels * renderer.layout.channels());
         if renderer.settings.mode != Mode::Path {
             let pass = renderer.photon_pass(0);
-            let PhotonOutlook { radii, stored, caustics } =
+            let PhotonOutlook { radii, stored } =
                 pilot::photon_outlook(world, &renderer.lights, &points, pass, photons, observer)?;
-            (renderer.stored, renderer.caustics) = (stored, caustics);
+            renderer.stored_share = stored;
             renderer.radii = match renderer.settings.radius {
                 Some(radius) => Radii { global: radius, caustic: radius },
                 None => radii,
             };
         }
         Ok(renderer)
-    }
-
-    /// Has `build` make the searches of all passes to come, for callers that time or replace them.
-    pub fn build_searches_with(&mut self, build: Box<SearchBuilder<'w>>) {
-        self.build_search = build;
     }
 
     /// Photons of a pass, or of all in the modes with one map.
@@ -159,14 +144,15 @@ impl<'w> Renderer<'w> {
 
     /// What the render will hold at its peak in `passes` passes, which may be a guess, beside the world itself.
     pub fn predicted_memory(&self, passes: u32, is_guess: bool) -> RenderMemory {
+        let stored = (f64::from(self.photons) * f64::from(self.stored_share)) as u64;
         let pixels = u64::from(self.crop[2]) * u64::from(self.crop[3]);
         RenderMemory::predict(&Ahead {
             values: pixels * self.layout.channels() as u64,
             passes,
             is_guess,
-            stored: self.stored,
+            stored,
             maps_once: matches!(self.settings.mode, Mode::Gather | Mode::Direct),
-            lights: (self.lights.bytes() + self.caustics.as_ref().map_or(0, |plan| plan.guide.bytes())) as u64,
+            lights: self.lights.bytes() as u64,
         })
     }
 
@@ -175,7 +161,7 @@ impl<'w> Renderer<'w> {
         &self.lights
     }
 
-    fn photon_pass(&self, pass: u32) -> PhotonPass<'_> {
+    fn photon_pass(&self, pass: u32) -> PhotonPass {
         PhotonPass {
             seed: self.settings.seed,
             kind: StreamKind::Photon,
@@ -184,12 +170,7 @@ impl<'w> Renderer<'w> {
             // The estimate's own edge to the camera is the last one.
             max_depth: if self.settings.mode == Mode::Direct { 127 } else { self.max_depth.saturating_sub(1) },
             keep: if self.settings.mode == Mode::Direct { Keep::All } else { Keep::Indirect },
-            guide: None,
-            together: self.caustics.as_ref().map(|plan| Together {
-                guide: &plan.guide,
-                plain: self.photons,
-                aimed: plan.count,
-            }),
+            profile_every: self.settings.profile_every,
         }
     }
 
@@ -226,6 +207,7 @@ impl<'w> Renderer<'w> {
             max_depth: self.max_depth,
             maps,
             probe: self.probe,
+            profile_every: self.settings.profile_every,
         };
         let result = match (self.settings.mode, maps) {
             (Mode::Direct, Some(maps)) => eye.run_direct(maps, &mut buffer, observer),
@@ -258,29 +240,15 @@ impl<'w> Renderer<'w> {
 
     fn build_maps(&mut self, pass: u32, radii: Radii, observer: &dyn Observer) -> Result<Maps, RenderError> {
         observer.begin(Phase::PhotonPass, pass);
-        let photon_pass = self.photon_pass(pass);
-        let (StoredPhotons { global, mut caustic, .. }, mut counters) =
-            photon_pass.run(self.world, &self.lights, observer)?;
-        if let Some(plan) = &self.caustics {
-            let own = PhotonPass {
-                kind: StreamKind::CausticPhoton,
-                count: plan.count,
-                keep: Keep::Caustic,
-                guide: Some(&plan.guide),
-                ..photon_pass
-            };
-            let (stored, counted) = own.run(self.world, &self.lights, observer)?;
-            caustic.reserve_exact(stored.caustic.len());
-            caustic.extend(stored.caustic);
-            counters += counted;
-        }
+        let (StoredPhotons { global, caustic }, counters) =
+            self.photon_pass(pass).run(self.world, &self.lights, observer)?;
         self.counters += counters;
         observer.begin(Phase::MapBuild, pass);
         let kernel = if self.settings.mode == Mode::Progressive { Kernel::Epanechnikov } else { Kernel::Constant };
         let name = &self.settings.search;
         let map = |photons, radius| -> Result<Map, PhotonError> {
             let options = BuildOptions { radius_hint: radius };
-            Ok(Map { search: (self.build_search)(name, photons, &options)?, radius, kernel })
+            Ok(Map { search: photinus_photons::build(name, photons, &options)?, radius, kernel })
         };
         Ok(Maps {
             global: map(global, radii.global)?,

@@ -61,6 +61,9 @@ pub struct Settings {
     pub aovs: Vec<Aov>,
     /// Variance is tracked for a stop on error.
     pub track_error: bool,
+    /// One query in this many is counted and timed by the instrumented twin; 0: no profile. The picture's bits are the
+    /// same.
+    pub profile_every: u32,
 }
 
 impl Default for Settings {
@@ -76,6 +79,7 @@ impl Default for Settings {
             search: "grid".to_owned(),
             aovs: Vec::new(),
             track_error: false,
+            profile_every: 64,
         }
     }
 }

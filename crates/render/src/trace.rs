@@ -1,9 +1,12 @@
 //! Batches of ray queries, surfaces that let light through taken into account.
 
 use crate::SurfacePoint;
-use crate::counters::Counters;
+use crate::counters::{Counters, timed};
+use crate::twin::Twin;
 use crate::world::World;
+use photinus_accel::RayCounters;
 use photinus_geometry::{Hit, Ray, Vec3};
+use photinus_profile::undisturbed;
 
 /// Most holes that one ray passes: stacks of leaves are shallow, broken scenes are not.
 const MAX_HOLES: u32 = 1024;
@@ -11,8 +14,7 @@ const MAX_HOLES: u32 = 1024;
 /// Answers queries of one batch and counts them.
 pub(crate) struct Tracer<'w> {
     world: &'w World,
-    /// This batch runs the counting kernels.
-    instrumented: bool,
+    twin: Twin,
     rays: Vec<Ray>,
     hits: Vec<Hit>,
     blocked: Vec<bool>,
@@ -20,18 +22,40 @@ pub(crate) struct Tracer<'w> {
 }
 
 impl<'w> Tracer<'w> {
-    pub fn new(world: &'w World, instrumented: bool) -> Self {
-        Self { world, instrumented, rays: Vec::new(), hits: Vec::new(), blocked: Vec::new(), pending: Vec::new() }
+    pub fn new(world: &'w World, twin: Twin) -> Self {
+        Self { world, twin, rays: Vec::new(), hits: Vec::new(), blocked: Vec::new(), pending: Vec::new() }
     }
 
     fn closest_batch(&mut self, counters: &mut Counters) {
         self.hits.clear();
         self.hits.resize(self.rays.len(), Hit::MISS);
-        if self.instrumented {
-            self.world.structure.closest_hit_counted(&self.rays, &mut self.hits, &mut counters.sampled_rays);
-        } else {
-            self.world.structure.closest_hit(&self.rays, &mut self.hits);
-        }
+        let structure = &self.world.structure;
+        timed(self.twin.is_on(), &mut counters.spent.rays, || {
+            for (run, counted) in self.twin.runs(self.rays.len()) {
+                let (rays, hits) = (&self.rays[run.clone()], &mut self.hits[run]);
+                if counted {
+                    steady(&mut counters.sampled_rays, |work| structure.closest_hit_counted(rays, hits, work));
+                } else {
+                    structure.closest_hit(rays, hits);
+                }
+            }
+        });
+    }
+
+    fn any_batch(&mut self, rays: &[Ray], counters: &mut Counters) {
+        self.blocked.clear();
+        self.blocked.resize(rays.len(), false);
+        let structure = &self.world.structure;
+        timed(self.twin.is_on(), &mut counters.spent.rays, || {
+            for (run, counted) in self.twin.runs(rays.len()) {
+                let (rays, blocked) = (&rays[run.clone()], &mut self.blocked[run]);
+                if counted {
+                    steady(&mut counters.sampled_rays, |work| structure.any_hit_counted(rays, blocked, work));
+                } else {
+                    structure.any_hit(rays, blocked);
+                }
+            }
+        });
     }
 
     /// The nearest hit of each ray on a surface that stops it. `draw(i)` gives a random number of ray `i`, asked for
@@ -73,6 +97,7 @@ impl<'w> Tracer<'w> {
                 return;
             }
             (self.pending, self.rays) = (next, retry);
+            counters.rays.beyond += self.rays.len() as u64;
             self.closest_batch(counters);
         }
     }
@@ -81,13 +106,7 @@ impl<'w> Tracer<'w> {
     pub fn visibility(&mut self, rays: &[Ray], visible: &mut Vec<f32>, counters: &mut Counters) {
         visible.clear();
         if !self.world.passes_light {
-            self.blocked.clear();
-            self.blocked.resize(rays.len(), false);
-            if self.instrumented {
-                self.world.structure.any_hit_counted(rays, &mut self.blocked, &mut counters.sampled_rays);
-            } else {
-                self.world.structure.any_hit(rays, &mut self.blocked);
-            }
+            self.any_batch(rays, counters);
             visible.extend(self.blocked.iter().map(|&b| if b { 0.0 } else { 1.0 }));
             return;
         }
@@ -115,10 +134,19 @@ impl<'w> Tracer<'w> {
                 }
             }
             (self.pending, self.rays) = (next, retry);
+            counters.rays.beyond += self.rays.len() as u64;
         }
         for &i in &self.pending {
             visible[i] = 0.0;
         }
+    }
+}
+
+/// Runs counted queries; ticks during which other programs had the processor are forgotten.
+fn steady(work: &mut RayCounters, query: impl FnOnce(&mut RayCounters)) {
+    let ticks = work.ticks;
+    if !undisturbed(|| query(work)) {
+        work.ticks = ticks;
     }
 }
 

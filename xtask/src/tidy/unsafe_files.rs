@@ -1,5 +1,5 @@
-//! `unsafe` is for SIMD kernels and for settings that only the C library has: each file that holds any is listed with
-//! the test that compares a kernel with its scalar twin, or that sees what the setting does.
+//! `unsafe` is for SIMD kernels, the processor's clock and settings that only the C library has: each file that holds any
+//! is listed with the test that compares a kernel with its scalar twin, or that sees what the code does.
 
 use super::Finding;
 use super::rust_lines::split;
@@ -28,6 +28,10 @@ const KERNELS: &[Kernel] = &[
     Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx2.rs", twin_test: WIDE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx512.rs", twin_test: WIDE_TWIN_TEST },
+    Kernel {
+        path: "crates/profile/src/ticks.rs",
+        twin_test: ("crates/profile/src/ticks.rs", "ticks_run_as_fast_as_the_clock"),
+    },
 ];
 
 /// Checks the list against the sources, both ways.

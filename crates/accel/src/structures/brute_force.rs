@@ -3,7 +3,7 @@
 
 use crate::list::leaf_tester;
 use crate::options::{BuildError, BuildOptions};
-use crate::structure::{RayCounters, Structure, StructureSummary};
+use crate::structure::{RayCounters, Structure, StructureSummary, stamped, stamped_batch};
 use photinus_geometry::{Hit, Primitives, Ray, Vec3};
 use photinus_intersect::{LeafTester, RtiMethod, TriangleHit};
 use photinus_num::Scalar;
@@ -53,33 +53,47 @@ pub fn build(primitives: Arc<Primitives>, options: &BuildOptions) -> Result<Box<
     Ok(Box::new(BruteForce { ids: (0..primitives.len() as u32).collect(), tester }))
 }
 
+impl BruteForce {
+    fn closest_batch<const COUNT: bool>(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), hits.len());
+        counters.traversal.rays += rays.len() as u64;
+        stamped_batch::<COUNT>(counters, |counters| {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = Hit::MISS;
+                let work = stamped::<COUNT, _>(&mut counters.ticks, || self.tester.closest_hit(ray, &self.ids, hit));
+                counters.add_leaf(self.ids.len(), work);
+            }
+        });
+    }
+
+    fn any_batch<const COUNT: bool>(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), occluded.len());
+        counters.traversal.rays += rays.len() as u64;
+        stamped_batch::<COUNT>(counters, |counters| {
+            for (ray, hit) in rays.iter().zip(occluded) {
+                let (any, work) = stamped::<COUNT, _>(&mut counters.ticks, || self.tester.any_hit(ray, &self.ids));
+                *hit = any;
+                counters.add_leaf(self.ids.len(), work);
+            }
+        });
+    }
+}
+
 impl Structure for BruteForce {
     fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.closest_hit_counted(rays, hits, &mut RayCounters::default());
+        self.closest_batch::<false>(rays, hits, &mut RayCounters::default());
     }
 
     fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {
-        self.any_hit_counted(rays, occluded, &mut RayCounters::default());
+        self.any_batch::<false>(rays, occluded, &mut RayCounters::default());
     }
 
     fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
-        assert_eq!(rays.len(), hits.len());
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = Hit::MISS;
-            let work = self.tester.closest_hit(ray, &self.ids, hit);
-            counters.add_leaf(self.ids.len(), work);
-            counters.traversal.rays += 1;
-        }
+        self.closest_batch::<true>(rays, hits, counters);
     }
 
     fn any_hit_counted(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
-        assert_eq!(rays.len(), occluded.len());
-        for (ray, hit) in rays.iter().zip(occluded) {
-            let (any, work) = self.tester.any_hit(ray, &self.ids);
-            *hit = any;
-            counters.add_leaf(self.ids.len(), work);
-            counters.traversal.rays += 1;
-        }
+        self.any_batch::<true>(rays, occluded, counters);
     }
 
     fn summary(&self) -> StructureSummary {

@@ -116,6 +116,9 @@ pub struct RenderArgs {
     /// Write counts, seconds and memory as JSON
     #[arg(long, value_name = "FILE.json", help_heading = "Results")]
     pub stats: Option<PathBuf>,
+    /// Count the work of one query in N, for the profile; 1: of all, 0: no profile
+    #[arg(long, value_name = "N", default_value_t = 64, help_heading = "Results")]
+    pub profile_every: u32,
     /// Print the same JSON document on standard output, and nothing else
     #[arg(long, help_heading = "Results")]
     pub json: bool,

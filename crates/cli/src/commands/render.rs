@@ -28,7 +28,7 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
     if !args.quiet {
         super::warn(&scene);
     }
-    let opened = begun.elapsed().as_secs_f64();
+    let (opened, opened_cpu) = (begun.elapsed().as_secs_f64(), photinus::machine::cpu_seconds());
     let contents = format!("{} triangles, {} spheres", report::count(scene.triangle_count() as u64), spheres(&scene));
     let session = Session::new(scene, options)?;
     let progress = Progress::new(args.quiet, session.options().stop);
@@ -51,11 +51,11 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
     monitor.progress.finish();
     let Monitor { progress, target, .. } = monitor;
 
-    stats.add_other("load", opened, &session.options().stop);
+    stats.add_other("load", opened_cpu, &session.options().stop);
     if let Some(picture) = &picture {
-        let writing = Instant::now();
+        let before = photinus::machine::cpu_seconds();
         target.save(picture)?;
-        stats.add_other("write", writing.elapsed().as_secs_f64(), &session.options().stop);
+        stats.add_other("write", photinus::machine::cpu_seconds() - before, &session.options().stop);
     }
     let document = Document { output: picture.is_some().then_some(target.path()), stats: &stats };
     if let Some(path) = &args.stats {
@@ -63,6 +63,9 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
     }
     if args.json {
         report::json(&document)?;
+    }
+    if args.profile_every > 0 {
+        profile_table(&stats).iter().for_each(|line| progress.line(line));
     }
     progress.line(&summary(&document));
     Ok(if stats.stopped == StopReason::Interrupted { Outcome::Interrupted } else { Outcome::Done })
@@ -75,6 +78,44 @@ struct Document<'a> {
     output: Option<&'a Path>,
     #[serde(flatten)]
     stats: &'a Stats,
+}
+
+/// The profile in the four rows of the thesis's Table 7, and the means behind them.
+fn profile_table(stats: &Stats) -> Vec<String> {
+    let profile = stats.profile();
+    let mut lines = vec![format!("{:19} {:>6} {:>9} {:>16} {:>10}", "", "share", "seconds", "calls", "per call")];
+    for row in profile.rows() {
+        let (calls, each) = match (row.calls, row.nanoseconds_a_call()) {
+            (Some((count, what)), Some(nanoseconds)) => {
+                (format!("{} {what}", report::short(count)), report::nanoseconds(nanoseconds))
+            }
+            _ => Default::default(),
+        };
+        lines.push(format!(
+            "{:19} {:4.1} % {:>7.2} s {calls:>16} {each:>10}",
+            row.name,
+            100.0 * row.share,
+            row.seconds
+        ));
+    }
+    let mut parts: Vec<(&str, f64)> = profile.other.iter().map(|(what, secs)| (what.as_str(), *secs)).collect();
+    parts.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let part = |(what, secs): &(&str, f64)| format!("{} {secs:.2} s", what.replace('_', " "));
+    lines.push(format!("of everything else: {}", parts.iter().take(5).map(part).collect::<Vec<_>>().join(", ")));
+    let (intersect, accel, search) = (&profile.intersect, &profile.accel, &profile.search);
+    lines.push(format!(
+        "a ray: {:.1} tests, {:.1} leaves of {:.1} primitives, {:.1} nodes",
+        intersect.tests_per_ray, accel.leaves_per_ray, accel.triangles_per_leaf, accel.nodes_per_ray
+    ));
+    if search.searches > 0 {
+        lines.push(format!(
+            "a search: {:.1} photons found of {:.1} tested; {} stored",
+            search.photons_found_mean,
+            search.tests_per_search,
+            report::count(profile.photons.stored)
+        ));
+    }
+    lines
 }
 
 fn summary(document: &Document<'_>) -> String {
@@ -123,6 +164,7 @@ fn options(args: &RenderArgs, begun: Instant) -> std::result::Result<RenderOptio
             seed: args.seed,
             search: args.search.clone(),
             aovs,
+            profile_every: args.profile_every,
             ..Settings::default()
         },
         accel: args.accel.clone(),

@@ -1,5 +1,6 @@
 //! Rendering: options in, picture and statistics out.
 
+mod measured;
 mod memory;
 mod options;
 mod picture;
@@ -15,7 +16,5 @@ pub use memory::{MemoryPrediction, Owner};
 pub use options::{RenderOptions, View};
 pub use picture::Picture;
 pub use session::{PassState, Plan, Rendered, Session, Watcher};
-pub use stats::{
-    AccelStats, IntersectStats, MemoryStats, PhaseStats, PhotonStats, RayStats, SearchStats, Seconds, Stats,
-};
+pub use stats::{AccelStats, MemoryStats, PhaseStats, PhotonStats, RayStats, Seconds, Stats};
 pub use stop::{Stop, StopReason};

@@ -1,23 +1,19 @@
 //! A session: a scene made ready once, then rendered and asked about.
 
+use super::measured::Measured;
 use super::memory::MemoryPrediction;
 use super::picture::Picture;
-use super::stats::{
-    AccelStats, IntersectStats, MemoryStats, PhaseStats, PhotonStats, RayStats, SearchStats, Seconds, Stats,
-};
+use super::stats::{AccelStats, MemoryStats, PhaseStats, PhotonStats, RayStats, Seconds, Stats};
 use super::stop::{Spent, StopReason};
 use super::timeline::Timeline;
 use super::{RenderOptions, Stop};
 use crate::machine::{Machine, cpu_seconds};
-use crate::query_clock::{QueryClock, TimedSearch, TimedStructure};
 use crate::{Error, Result};
 use photinus_accel::{BuildOptions, StructureSummary};
 use photinus_geometry::{Hit, Ray};
 use photinus_render::{Compiled, Mode, Observer, Phase, RenderError, Renderer, World};
 use photinus_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Instant;
 
 /// A scene ready to be rendered.
@@ -25,8 +21,8 @@ pub struct Session {
     world: World,
     options: RenderOptions,
     pool: ThreadPool,
-    clock: Arc<QueryClock>,
     structure: StructureSummary,
+    triangles: u64,
     build: Seconds,
     notes: Vec<String>,
 }
@@ -92,22 +88,21 @@ impl Session {
         options.check()?;
         options.apply(&mut scene)?;
         let notes = options.tessellate_spheres(&mut scene)?.into_iter().collect();
+        let triangles = scene.triangle_count() as u64;
         let pool = ThreadPoolBuilder::new()
             .num_threads(options.threads.unwrap_or(0))
             .build()
             .map_err(|e| Error::setting("--threads", format!("they cannot be started: {e}")))?;
         let (begun, cpu) = (Instant::now(), cpu_seconds());
-        let clock = Arc::new(QueryClock::default());
         let (world, structure) = pool.install(|| -> Result<(World, StructureSummary)> {
             let compiled = Compiled::new(scene);
             let build = BuildOptions { method: options.intersect.clone(), ..BuildOptions::default() };
             let structure = photinus_accel::build(&options.accel, compiled.primitives().clone(), &build)?;
             let summary = structure.summary();
-            let timed = TimedStructure::new(structure, clock.clone());
-            Ok((compiled.with_structure(Box::new(timed), options.surface_model), summary))
+            Ok((compiled.with_structure(structure, options.surface_model), summary))
         })?;
         let build = Seconds { wall_secs: begun.elapsed().as_secs_f64(), cpu_secs: cpu_seconds() - cpu };
-        Ok(Self { world, options, pool, clock, structure, build, notes })
+        Ok(Self { world, options, pool, structure, triangles, build, notes })
     }
 
     /// The structure that was built.
@@ -166,7 +161,6 @@ impl Session {
     fn run(&self, watcher: &dyn Watcher) -> Result<Rendered> {
         let stop = self.options.stop;
         let timeline = Timeline::new(watcher);
-        self.clock.reset();
         let mut settings = self.options.settings.clone();
         settings.track_error |= stop.target_error.is_some();
         let mut renderer = match Renderer::new(&self.world, settings, &timeline) {
@@ -178,11 +172,6 @@ impl Session {
         let mut reason = StopReason::Interrupted;
         let mut plan = None;
         if let Some(renderer) = &mut renderer {
-            let clock = &self.clock;
-            renderer.build_searches_with(Box::new(move |name, photons, options| {
-                let search = photinus_photons::build(name, photons, options)?;
-                Ok(Box::new(TimedSearch::new(search, clock.clone())))
-            }));
             let made = self.plan(renderer);
             watcher.planned(&made);
             plan = Some(made);
@@ -268,11 +257,18 @@ impl Session {
         let counters = renderer.map(|r| *r.counters()).unwrap_or_default();
         let (wall_secs, cpu_secs) = self.options.stop.clock();
         let [_, _, width, height] = self.window();
-        let ray_secs = self.clock.ray_seconds();
-        let test_secs = ray_secs * self.clock.test_share().unwrap_or(0.0);
         let settings = &self.options.settings;
-        Stats {
+        let measured = Measured::of(&counters, &self.structure, &settings.search);
+        let other = [
+            ("build", self.build.cpu_secs),
+            ("pilot", timeline.spent(Phase::Pilot).cpu_secs),
+            ("map_build", timeline.spent(Phase::MapBuild).cpu_secs),
+            ("density_estimate", measured.density_estimate_secs),
+            ("surfaces", measured.surfaces_secs),
+        ];
+        let mut stats = Stats {
             scene: self.world.name.clone(),
+            triangles: self.triangles,
             size: [width, height],
             passes: renderer.map_or(0, Renderer::passes),
             stopped,
@@ -287,18 +283,19 @@ impl Session {
                 eye_pass: timeline.spent(Phase::EyePass),
             },
             rays: RayStats::of(&counters),
-            intersect: IntersectStats::of(&counters, test_secs),
-            accel: AccelStats::of(&counters, self.structure.clone(), ray_secs - test_secs),
-            search: SearchStats::of(&counters, &settings.search, self.clock.search_seconds()),
-            photons: PhotonStats::of(&counters.photons),
-            caustic_photons: PhotonStats::of(&counters.caustic_photons),
-            other: BTreeMap::new(),
+            intersect: measured.intersect,
+            accel: AccelStats { profile: measured.accel, structure: self.structure.clone() },
+            search: measured.search,
+            photons: PhotonStats::of(&counters),
+            other: other.map(|(what, secs)| (what.to_owned(), secs)).into(),
             memory: MemoryStats::of(plan.map(|plan| &plan.memory)),
             threads: self.threads(),
             seed: settings.seed,
             settings: settings.clone(),
             version: env!("CARGO_PKG_VERSION"),
             machine: Machine::this(),
-        }
+        };
+        stats.settle();
+        stats
     }
 }

@@ -4,7 +4,10 @@ use super::memory::{MemoryPrediction, Owner};
 use super::stop::{Stop, StopReason};
 use crate::machine::{Machine, resident};
 use photinus_accel::StructureSummary;
-use photinus_render::{Counters, PhotonCounts, PhotonPower, RayCounts, Settings};
+use photinus_profile::{
+    AccelProfile, IntersectProfile, PhotonProfile, Profile, ProfileSeconds, RayProfile, SearchProfile,
+};
+use photinus_render::{Counters, PhotonPower, RayCounts, Settings};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -42,54 +45,14 @@ pub struct RayStats {
     pub total: u64,
 }
 
-/// Ray-primitive tests. Counts are scaled up from the batches that run the counting kernel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct IntersectStats {
-    /// Tests of all rays.
-    pub tests: f64,
-    /// Tests of a ray, in the mean.
-    pub tests_per_ray: f64,
-    /// Thread seconds in tests: the share of the ray queries' time that a fit of the counted batches' times to their
-    /// nodes and tests gives the tests.
-    pub seconds: f64,
-}
-
-/// Structure traversal. Counts are scaled up from the batches that run the counting kernel.
+/// Structure traversal.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AccelStats {
-    /// Nodes visited by all rays, leaves excluded.
-    pub nodes_visited: f64,
-    /// Nodes visited by a ray, in the mean.
-    pub nodes_per_ray: f64,
-    /// Leaves visited by a ray, in the mean.
-    pub leaves_per_ray: f64,
-    /// Primitives of a leaf visited, in the mean.
-    pub triangles_per_leaf: f64,
-    /// Levels below the root.
-    pub depth: u32,
-    /// Thread seconds in traversal: the rest of the ray queries' time.
-    pub seconds: f64,
-    /// Rays of the batches that were counted.
-    pub rays_counted: u64,
+    /// Counts and seconds.
+    #[serde(flatten)]
+    pub profile: AccelProfile,
     /// What was built.
     pub structure: StructureSummary,
-}
-
-/// Photon search.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct SearchStats {
-    /// Member name.
-    pub name: String,
-    /// Searches made.
-    pub searches: u64,
-    /// Photons found by a search, in the mean.
-    pub photons_found_mean: f64,
-    /// Photons tested by all searches, scaled up from the batches that run the counting kernel.
-    pub photons_tested: f64,
-    /// Thread seconds in photon searches, with the sums that they make.
-    pub seconds: f64,
-    /// Searches of the batches that were counted.
-    pub searches_counted: u64,
 }
 
 /// Photons and their power.
@@ -127,6 +90,8 @@ pub struct MemoryStats {
 pub struct Stats {
     /// Name of the scene.
     pub scene: String,
+    /// Triangles of the scene, spheres not counted.
+    pub triangles: u64,
     /// Pixels across and down of the window that was rendered.
     pub size: [u32; 2],
     /// Passes that ran.
@@ -144,16 +109,14 @@ pub struct Stats {
     /// Rays by purpose.
     pub rays: RayStats,
     /// Ray-primitive tests.
-    pub intersect: IntersectStats,
+    pub intersect: IntersectProfile,
     /// Structure traversal.
     pub accel: AccelStats,
     /// Photon search.
-    pub search: SearchStats,
+    pub search: SearchProfile,
     /// Photons.
     pub photons: PhotonStats,
-    /// Photons sent out for caustics alone.
-    pub caustic_photons: PhotonStats,
-    /// Wall seconds of what is none of the phases, by function.
+    /// Thread seconds of what is neither test, traversal nor search, by function.
     pub other: BTreeMap<String, f64>,
     /// Memory.
     pub memory: MemoryStats,
@@ -170,64 +133,52 @@ pub struct Stats {
 }
 
 impl Stats {
-    /// Adds what was done outside the render, loading and writing for instance, and looks at the clocks and the memory
-    /// again.
-    pub fn add_other(&mut self, what: &str, wall_secs: f64, stop: &Stop) {
-        *self.other.entry(what.to_owned()).or_default() += wall_secs;
+    /// Adds what was done outside the render, loading and writing for instance, by its processor seconds, and looks at
+    /// the clocks and the memory again.
+    pub fn add_other(&mut self, what: &str, cpu_secs: f64, stop: &Stop) {
+        *self.other.entry(what.to_owned()).or_default() += cpu_secs;
         let (wall_secs, cpu_secs) = stop.clock();
         self.seconds = Seconds { wall_secs, cpu_secs };
         self.memory.peak_bytes = resident().map(|resident| resident.peak_bytes);
+        self.settle();
+    }
+
+    /// Makes the entry of what no function accounts for, so that everything adds up to the processor time.
+    pub(super) fn settle(&mut self) {
+        self.other.remove(UNATTRIBUTED);
+        let attributed: f64 = self.other.values().sum();
+        let rest = self.profile().other_seconds() - attributed;
+        self.other.insert(UNATTRIBUTED.to_owned(), rest.max(0.0));
+    }
+
+    /// The profile: what the thesis measured, and what hardware is projected from.
+    pub fn profile(&self) -> Profile {
+        Profile {
+            scene: self.scene.clone(),
+            triangles: self.triangles,
+            seconds: ProfileSeconds { cpu_secs: self.seconds.cpu_secs },
+            rays: RayProfile { total: self.rays.total },
+            intersect: self.intersect,
+            accel: self.accel.profile,
+            search: self.search.clone(),
+            photons: PhotonProfile { emitted: self.photons.emitted, stored: self.photons.stored },
+            other: self.other.clone(),
+        }
     }
 }
+
+/// Key in [`Stats::other`] of what no function accounts for: camera rays, films, lists, threads.
+const UNATTRIBUTED: &str = "unattributed";
 
 impl RayStats {
     pub(super) fn of(counters: &Counters) -> Self {
-        let counts = counters.rays;
-        let total = counts.photon + counts.camera + counts.specular + counts.shadow + counts.gather;
-        Self { counts, total }
-    }
-}
-
-impl IntersectStats {
-    pub(super) fn of(counters: &Counters, seconds: f64) -> Self {
-        let tests_per_ray = ratio(counters.sampled_rays.intersect.tests, counters.sampled_rays.traversal.rays);
-        Self { tests: tests_per_ray * RayStats::of(counters).total as f64, tests_per_ray, seconds }
-    }
-}
-
-impl AccelStats {
-    pub(super) fn of(counters: &Counters, structure: StructureSummary, seconds: f64) -> Self {
-        let sampled = counters.sampled_rays.traversal;
-        let nodes_per_ray = ratio(sampled.nodes_visited, sampled.rays);
-        Self {
-            nodes_visited: nodes_per_ray * RayStats::of(counters).total as f64,
-            nodes_per_ray,
-            leaves_per_ray: ratio(sampled.leaves_visited, sampled.rays),
-            triangles_per_leaf: ratio(sampled.leaf_prims, sampled.leaves_visited),
-            depth: structure.depth,
-            seconds,
-            rays_counted: sampled.rays,
-            structure,
-        }
-    }
-}
-
-impl SearchStats {
-    pub(super) fn of(counters: &Counters, name: &str, seconds: f64) -> Self {
-        let sampled = counters.sampled_searches;
-        Self {
-            name: name.to_owned(),
-            searches: counters.searches,
-            photons_found_mean: ratio(counters.photons_found, counters.searches),
-            photons_tested: ratio(sampled.photons_tested, sampled.searches) * counters.searches as f64,
-            seconds,
-            searches_counted: sampled.searches,
-        }
+        Self { counts: counters.rays, total: counters.rays.total() }
     }
 }
 
 impl PhotonStats {
-    pub(super) fn of(photons: &PhotonCounts) -> Self {
+    pub(super) fn of(counters: &Counters) -> Self {
+        let photons = &counters.photons;
         Self {
             emitted: photons.emitted,
             stored: photons.stored,
@@ -248,9 +199,4 @@ impl MemoryStats {
             by_owner: prediction.map(|prediction| prediction.by_owner.clone()).unwrap_or_default(),
         }
     }
-}
-
-/// A mean; 0 where nothing was counted.
-fn ratio(sum: u64, count: u64) -> f64 {
-    if count == 0 { 0.0 } else { sum as f64 / count as f64 }
 }

@@ -2,7 +2,7 @@
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
 use crate::nearest::sort_by_distance;
-use crate::visiting::gather_batch_by_visiting;
+use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
 use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
@@ -32,12 +32,7 @@ impl Search for BruteForce {
         out: &mut [Gathered],
         counters: &mut SearchCounters,
     ) {
-        self.gather(queries, kernel, out);
-        *counters += SearchCounters {
-            searches: queries.len() as u64,
-            photons_tested: queries.len() as u64 * self.photons.len() as u64,
-            photons_found: out.iter().map(|o| u64::from(o.count)).sum(),
-        };
+        gather_counted_by_visiting(self, queries, kernel, out, counters);
     }
 
     fn visit(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32)) {
@@ -48,6 +43,15 @@ impl Search for BruteForce {
                 visit(photon, d2);
             }
         }
+    }
+
+    fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters) {
+        let mut photons_found = 0;
+        self.visit(query, &mut |photon, d2| {
+            photons_found += 1;
+            visit(photon, d2);
+        });
+        *counters += SearchCounters { searches: 1, photons_tested: self.photons.len() as u64, photons_found };
     }
 
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
@@ -63,6 +67,22 @@ impl Search for BruteForce {
         self.within_radius(position, radius, found);
         sort_by_distance(found);
         found.truncate(k);
+    }
+
+    fn nearest_counted(
+        &self,
+        position: Vec3,
+        k: usize,
+        radius: f32,
+        found: &mut Vec<Neighbor>,
+        counters: &mut SearchCounters,
+    ) {
+        self.nearest(position, k, radius, found);
+        *counters += SearchCounters {
+            searches: 1,
+            photons_tested: self.photons.len() as u64,
+            photons_found: found.len() as u64,
+        };
     }
 
     fn photon(&self, id: u32) -> Photon {

@@ -7,7 +7,7 @@
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
 use crate::nearest::NearestHeap;
-use crate::visiting::gather_batch_by_visiting;
+use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
 use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::{Aabb, Vec3};
 use photinus_profile::SearchCounters;
@@ -200,18 +200,20 @@ impl Search for KdBalanced {
         out: &mut [Gathered],
         counters: &mut SearchCounters,
     ) {
-        self.gather(queries, kernel, out);
-        for (query, out) in queries.iter().zip(out) {
-            *counters += SearchCounters {
-                searches: 1,
-                photons_tested: self.visit_counting(query, &mut |_, _| ()),
-                photons_found: u64::from(out.count),
-            };
-        }
+        gather_counted_by_visiting(self, queries, kernel, out, counters);
     }
 
     fn visit(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32)) {
         self.visit_counting(query, visit);
+    }
+
+    fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters) {
+        let mut photons_found = 0;
+        let photons_tested = self.visit_counting(query, &mut |photon, d2| {
+            photons_found += 1;
+            visit(photon, d2);
+        });
+        *counters += SearchCounters { searches: 1, photons_tested, photons_found };
     }
 
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
@@ -225,12 +227,24 @@ impl Search for KdBalanced {
     }
 
     fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>) {
+        self.nearest_counted(position, k, radius, found, &mut SearchCounters::default());
+    }
+
+    fn nearest_counted(
+        &self,
+        position: Vec3,
+        k: usize,
+        radius: f32,
+        found: &mut Vec<Neighbor>,
+        counters: &mut SearchCounters,
+    ) {
         let mut heap = NearestHeap::new(found, k, radius_sq(position, radius));
-        self.traverse(position, heap.limit(), |node, distance_sq| {
+        let photons_tested = self.traverse(position, heap.limit(), |node, distance_sq| {
             heap.offer(Neighbor { distance_sq, photon: self.nodes[node].id() });
             heap.limit()
         });
         heap.finish();
+        *counters += SearchCounters { searches: 1, photons_tested, photons_found: found.len() as u64 };
     }
 
     fn photon(&self, id: u32) -> Photon {

@@ -10,7 +10,7 @@ mod traverse;
 use crate::bounds::{half_area_f64, size_f64};
 use crate::list::leaf_tester;
 use crate::options::{BuildError, BuildOptions};
-use crate::structure::{RayCounters, Structure, StructureSummary};
+use crate::structure::{RayCounters, Structure, StructureSummary, stamped, stamped_batch};
 use build::{Built, Rule};
 use photinus_geometry::{Aabb, Hit, Primitives, Ray};
 use photinus_intersect::LeafTester;
@@ -179,33 +179,61 @@ impl KdTree {
         }
     }
 
-    fn closest(&self, ray: &Ray, counters: &mut RayCounters) -> Hit {
+    /// The nearest hit of a ray; counts the work where `COUNT` says so.
+    #[inline(always)]
+    fn closest<const COUNT: bool>(&self, ray: &Ray, counters: &mut RayCounters) -> Hit {
         let mut best = Hit::MISS;
         let mut nodes = 0;
         let mut leaf = |LeafVisit { refs, exit }| {
-            let work = self.tester.closest_hit(ray, &self.refs[refs.clone()], &mut best);
-            counters.add_leaf(refs.len(), work);
+            let ids = &self.refs[refs];
+            let work = stamped::<COUNT, _>(&mut counters.ticks, || self.tester.closest_hit(ray, ids, &mut best));
+            if COUNT {
+                counters.add_leaf(ids.len(), work);
+            }
             if best.t < exit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        self.walk(ray, || nodes += 1, &mut leaf);
-        counters.traversal.rays += 1;
+        self.walk(ray, || nodes += u64::from(COUNT), &mut leaf);
         counters.traversal.nodes_visited += nodes;
         best
     }
 
-    fn any(&self, ray: &Ray, counters: &mut RayCounters) -> bool {
+    /// Whether a ray hits anything; counts the work where `COUNT` says so.
+    #[inline(always)]
+    fn any<const COUNT: bool>(&self, ray: &Ray, counters: &mut RayCounters) -> bool {
         let mut found = false;
         let mut nodes = 0;
         let mut leaf = |LeafVisit { refs, .. }| {
-            let (any, work) = self.tester.any_hit(ray, &self.refs[refs.clone()]);
-            counters.add_leaf(refs.len(), work);
+            let ids = &self.refs[refs];
+            let (any, work) = stamped::<COUNT, _>(&mut counters.ticks, || self.tester.any_hit(ray, ids));
+            if COUNT {
+                counters.add_leaf(ids.len(), work);
+            }
             found = any;
             if any { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        self.walk(ray, || nodes += 1, &mut leaf);
-        counters.traversal.rays += 1;
+        self.walk(ray, || nodes += u64::from(COUNT), &mut leaf);
         counters.traversal.nodes_visited += nodes;
         found
+    }
+
+    fn closest_batch<const COUNT: bool>(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), hits.len());
+        counters.traversal.rays += rays.len() as u64;
+        stamped_batch::<COUNT>(counters, |counters| {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = self.closest::<COUNT>(ray, counters);
+            }
+        });
+    }
+
+    fn any_batch<const COUNT: bool>(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
+        assert_eq!(rays.len(), occluded.len());
+        counters.traversal.rays += rays.len() as u64;
+        stamped_batch::<COUNT>(counters, |counters| {
+            for (ray, hit) in rays.iter().zip(occluded) {
+                *hit = self.any::<COUNT>(ray, counters);
+            }
+        });
     }
 }
 
@@ -229,25 +257,19 @@ fn rule(options: &BuildOptions) -> Result<Rule, BuildError> {
 
 impl Structure for KdTree {
     fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.closest_hit_counted(rays, hits, &mut RayCounters::default());
+        self.closest_batch::<false>(rays, hits, &mut RayCounters::default());
     }
 
     fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {
-        self.any_hit_counted(rays, occluded, &mut RayCounters::default());
+        self.any_batch::<false>(rays, occluded, &mut RayCounters::default());
     }
 
     fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
-        assert_eq!(rays.len(), hits.len());
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.closest(ray, counters);
-        }
+        self.closest_batch::<true>(rays, hits, counters);
     }
 
     fn any_hit_counted(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
-        assert_eq!(rays.len(), occluded.len());
-        for (ray, hit) in rays.iter().zip(occluded) {
-            *hit = self.any(ray, counters);
-        }
+        self.any_batch::<true>(rays, occluded, counters);
     }
 
     fn as_kd_tree(&self) -> Option<&KdTree> {

@@ -139,7 +139,7 @@ fn leaves_come_front_to_back_and_hold_the_hit() {
         }
         assert_eq!(entries.len(), leaves.len());
         assert!(entries.is_sorted_by(|x, y| x <= &(y + 1e-4)), "{entries:?}");
-        let hit = tree.closest(&ray, &mut RayCounters::default());
+        let hit = tree.closest::<true>(&ray, &mut RayCounters::default());
         if hit.is_hit() {
             hits += 1;
             let holds = |l: &LeafRange| tree.refs[l.start as usize..(l.start + l.count) as usize].contains(&hit.prim);

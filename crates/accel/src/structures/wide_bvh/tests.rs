@@ -57,7 +57,7 @@ fn all_kernels_give_the_same_bits_and_the_same_work() {
             assert_eq!(hits, plain);
             let mut occluded = vec![false; rays.len()];
             tree.any_hit_counted(&rays, &mut occluded, &mut counters);
-            (hits, occluded, counters)
+            (hits, occluded, counters.intersect, counters.traversal)
         };
         let scalar = run(Kernel::Scalar);
         assert!(scalar.0.iter().filter(|h| h.is_hit()).count() > 300);

@@ -16,6 +16,7 @@ use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
 use photinus_intersect::methods::woop::{self, Started};
+use photinus_profile::ticks;
 
 /// Rays under way at a time.
 const SLOTS: usize = 32;
@@ -129,6 +130,8 @@ impl WideBvh {
         if COUNT {
             counters.traversal.rays += rays.len() as u64;
         }
+        // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
+        let begun = if COUNT { ticks() } else { 0 };
         let states = States { slots: [[0; SLOTS]; 4], lens: [0; 4] };
         let nodes = (self.nodes.as_ptr().cast::<u8>(), size_of::<Node>());
         let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
@@ -140,11 +143,19 @@ impl WideBvh {
         walk.start();
         while walk.states.lens != [0; 4] {
             walk.visit_nodes::<COUNT>(counters);
+            let tests_begun = if COUNT { ticks() } else { 0 };
             walk.visit_blocks::<ANY, COUNT>(counters);
             if walk.states.lens[IDS] > 0 {
                 walk.visit_ids::<ANY, COUNT>(counters);
             }
+            if COUNT {
+                counters.ticks.tests += ticks().wrapping_sub(tests_begun);
+                counters.ticks.pairs += 1;
+            }
             walk.end_rays();
+        }
+        if COUNT {
+            counters.ticks.total += ticks().wrapping_sub(begun);
         }
     }
 }

@@ -65,6 +65,13 @@ impl Grid {
         let Built { cells, table, blocks, boxes, ids } = build(photons, options);
         Self { cells, table, blocks, boxes, ids, photon_count, slots: OnceLock::new(), kernels }
     }
+
+    /// Photons in the blocks that a query reaches; the last block may be padded.
+    fn photons_in(&self, scratch: &Scratch) -> u64 {
+        let lanes = scratch.hits.len() * LANES;
+        let reads_last = scratch.hits.last().is_some_and(|block| *block as usize + 1 == self.blocks.len());
+        (lanes - if reads_last { self.blocks.len() * LANES - self.photon_count } else { 0 }) as u64
+    }
 }
 
 impl Search for Grid {
@@ -81,17 +88,16 @@ impl Search for Grid {
         out: &mut [Gathered],
         counters: &mut SearchCounters,
     ) {
-        self.gather(queries, kernel, out);
+        assert_eq!(queries.len(), out.len(), "one result a query");
+        for (queries, out) in queries.chunks(QUERIES_A_TASK).zip(out.chunks_mut(QUERIES_A_TASK)) {
+            self.gather_part(queries, kernel, out);
+        }
         let mut scratch = Scratch::new();
-        let padding = self.blocks.len() * LANES - self.photon_count;
         for (query, out) in queries.iter().zip(out) {
-            let r2 = radius_sq(query.position, query.radius);
-            self.find_blocks(query.position, query.radius, r2, &mut scratch);
-            let lanes = scratch.hits.len() * LANES;
-            let reads_last = scratch.hits.last().is_some_and(|block| *block as usize + 1 == self.blocks.len());
+            self.find_blocks(query.position, query.radius, radius_sq(query.position, query.radius), &mut scratch);
             *counters += SearchCounters {
                 searches: 1,
-                photons_tested: (lanes - if reads_last { padding } else { 0 }) as u64,
+                photons_tested: self.photons_in(&scratch),
                 photons_found: u64::from(out.count),
             };
         }
@@ -113,6 +119,17 @@ impl Search for Grid {
         }
     }
 
+    fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters) {
+        let mut photons_found = 0;
+        self.visit(query, &mut |photon, d2| {
+            photons_found += 1;
+            visit(photon, d2);
+        });
+        let mut scratch = Scratch::new();
+        self.find_blocks(query.position, query.radius, radius_sq(query.position, query.radius), &mut scratch);
+        *counters += SearchCounters { searches: 1, photons_tested: self.photons_in(&scratch), photons_found };
+    }
+
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
         let mut scratch = Scratch::new();
         let r2 = radius_sq(position, radius);
@@ -123,9 +140,21 @@ impl Search for Grid {
         found.sort_unstable_by_key(|n| n.photon);
     }
 
-    /// Searches balls that grow until one holds `k` photons: those nearest are among them.
     fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>) {
+        self.nearest_counted(position, k, radius, found, &mut SearchCounters::default());
+    }
+
+    /// Searches balls that grow until one holds `k` photons: those nearest are among them.
+    fn nearest_counted(
+        &self,
+        position: Vec3,
+        k: usize,
+        radius: f32,
+        found: &mut Vec<Neighbor>,
+        counters: &mut SearchCounters,
+    ) {
         found.clear();
+        counters.searches += 1;
         let r2 = radius_sq(position, radius);
         if k == 0 || r2 < 0.0 {
             return;
@@ -138,6 +167,7 @@ impl Search for Grid {
             let (ball, ball_sq) = if last { (radius, r2) } else { (reach, reach * reach) };
             self.find_blocks(position, ball, ball_sq, &mut scratch);
             candidates.clear();
+            counters.photons_tested += self.photons_in(&scratch);
             (self.kernels.scan)(&self.blocks, &self.ids, &scratch.hits, position, ball_sq, &mut candidates);
             if last || candidates.len() >= k || candidates.len() == self.photon_count {
                 break;
@@ -145,6 +175,7 @@ impl Search for Grid {
             reach *= 2.0;
         }
         candidates.finish(found);
+        counters.photons_found += found.len() as u64;
     }
 
     fn photon(&self, id: u32) -> Photon {
