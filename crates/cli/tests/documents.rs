@@ -107,6 +107,8 @@ fn render_and_compare() {
             "photons.absorbed",
             "photons.escaped",
             "photons.power.emitted",
+            "caustic_photons.emitted",
+            "caustic_photons.power.stored",
             "other",
             "memory.peak_bytes",
             "memory.by_owner",

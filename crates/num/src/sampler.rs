@@ -17,6 +17,8 @@ pub enum StreamKind {
     Scene = 4,
     /// Tests.
     Test = 5,
+    /// Photons sent out for caustics alone: streams and indices as of photons.
+    CausticPhoton = 6,
     /// Which queries are counted: it never reaches a picture.
     Twin = 7,
 }

@@ -102,8 +102,10 @@ pub(crate) fn timed<T>(profiled: bool, nanoseconds: &mut u64, work: impl FnOnce(
 pub struct Counters {
     /// Rays, all of them.
     pub rays: RayCounts,
-    /// Photons, all of them.
+    /// Photons, all of them but those sent out for caustics alone.
     pub photons: PhotonCounts,
+    /// Photons sent out for caustics alone: they end (absorbed) where they can no longer belong to one.
+    pub caustic_photons: PhotonCounts,
     /// Estimates from photons, all of them.
     pub searches: u64,
     /// Photons that they found.
@@ -118,17 +120,23 @@ pub struct Counters {
     pub spent: Spent,
 }
 
+impl AddAssign for PhotonCounts {
+    fn add_assign(&mut self, other: Self) {
+        add!(self, other; emitted, stored, stored_caustic, absorbed, escaped, cut);
+        for c in 0..3 {
+            self.power.emitted[c] += other.power.emitted[c];
+            self.power.absorbed[c] += other.power.absorbed[c];
+            self.power.escaped[c] += other.power.escaped[c];
+            self.power.cut[c] += other.power.cut[c];
+            self.power.stored[c] += other.power.stored[c];
+        }
+    }
+}
+
 impl AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
         add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather, beyond);
-        add!(self.photons, other.photons; emitted, stored, stored_caustic, absorbed, escaped, cut);
-        for c in 0..3 {
-            self.photons.power.emitted[c] += other.photons.power.emitted[c];
-            self.photons.power.absorbed[c] += other.photons.power.absorbed[c];
-            self.photons.power.escaped[c] += other.photons.power.escaped[c];
-            self.photons.power.cut[c] += other.photons.power.cut[c];
-            self.photons.power.stored[c] += other.photons.power.stored[c];
-        }
-        add!(self, other; searches, photons_found, sampled_rays, sampled_searches, sampled_estimates, spent);
+        add!(self, other; photons, caustic_photons, searches, photons_found);
+        add!(self, other; sampled_rays, sampled_searches, sampled_estimates, spent);
     }
 }

@@ -6,6 +6,7 @@
 
 pub mod bsdf;
 mod camera;
+mod caustic_plan;
 mod control;
 mod counters;
 mod direct;

@@ -5,7 +5,7 @@ use crate::SurfacePoint;
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
-use crate::light::{Lights, VisibleRegion};
+use crate::light::{EmissionGuide, EmissionPoint, Lights, VisibleRegion};
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
 use crate::world::World;
@@ -31,11 +31,13 @@ pub(crate) enum Keep {
     /// Those whose light no shadow ray finds: after a diffuse bounce in the global map, after mirror-like bounces only
     /// in the caustic map.
     Indirect,
+    /// The caustic map alone: photons end where they can no longer belong to it.
+    Caustic,
 }
 
 /// One photon pass.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PhotonPass {
+pub(crate) struct PhotonPass<'g> {
     pub seed: u64,
     pub kind: StreamKind,
     pub pass: u32,
@@ -43,8 +45,31 @@ pub(crate) struct PhotonPass {
     /// Most edges of a photon's path.
     pub max_depth: u32,
     pub keep: Keep,
+    /// Where photons are worth starting; none: as the lights shine.
+    pub guide: Option<&'g EmissionGuide>,
+    /// The caustic map is filled by this pass and another one.
+    pub together: Option<Together<'g>>,
     /// One ray in this many is counted, see [`Twin`].
     pub profile_every: u32,
+}
+
+/// Two passes that fill one caustic map: one whose photons start as the lights shine, one of aimed photons. Each photon
+/// counts over the density with which both of them start photons where it started (the balance heuristic of Veach 1997,
+/// section 9.2.2), so that no photon of the map is stronger than an unaimed one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Together<'g> {
+    pub guide: &'g EmissionGuide,
+    /// Photons of the two passes.
+    pub plain: u32,
+    pub aimed: u32,
+}
+
+impl Together<'_> {
+    /// Weight of a photon of a pass that sends out `count` with `density`, started where the guide's density is `aimed`.
+    fn weight(&self, count: u32, density: f32, aimed: f32) -> f32 {
+        let own = f64::from(count) * f64::from(density);
+        (own / (f64::from(self.plain) + f64::from(self.aimed) * f64::from(aimed))) as f32
+    }
 }
 
 /// Stored photons, in the order of emission.
@@ -52,9 +77,14 @@ pub(crate) struct PhotonPass {
 pub(crate) struct StoredPhotons {
     pub global: Vec<Photon>,
     pub caustic: Vec<Photon>,
+    /// Which photon of the pass each caustic one is; kept by the pilot only.
+    pub origins: Vec<u32>,
 }
 
 struct Walk {
+    index: u32,
+    /// Density of its start, over that of an unaimed one.
+    density: f32,
     ray: Ray,
     flux: Vec3,
     depth: u32,
@@ -63,7 +93,7 @@ struct Walk {
     sampler: Sampler,
 }
 
-impl PhotonPass {
+impl PhotonPass<'_> {
     /// Sends out the photons. Equal arguments give equal photons in equal order on any number of threads.
     pub fn run(
         &self,
@@ -93,6 +123,7 @@ impl PhotonPass {
                 let (photons, c) = result.ok_or(Cancelled)?;
                 all.global.extend_from_slice(&photons.global);
                 all.caustic.extend_from_slice(&photons.caustic);
+                all.origins.extend_from_slice(&photons.origins);
                 counters += c;
             }
             if first == 0 && last < chunks {
@@ -102,7 +133,19 @@ impl PhotonPass {
                 all.caustic.reserve_exact((all.caustic.len() as f64 * share) as usize);
             }
         }
+        if self.keep == Keep::Caustic {
+            counters.caustic_photons = std::mem::take(&mut counters.photons);
+        }
         Ok((all, counters))
+    }
+
+    /// Where photon `index` starts, the density of its start over that of an unaimed one, and the rest of its random
+    /// numbers.
+    pub fn start(&self, index: u32) -> (EmissionPoint, f32, Sampler) {
+        let mut sampler = Sampler::new(self.seed, self.kind, u64::from(self.pass), index);
+        let point = EmissionPoint::draw(&mut sampler);
+        let (point, density) = self.guide.map_or((point, 1.0), |guide| guide.aim(point));
+        (point, density, sampler)
     }
 
     fn chunk(&self, world: &World, lights: &Lights, chunk: u32) -> (StoredPhotons, Counters) {
@@ -112,12 +155,12 @@ impl PhotonPass {
         let first = chunk * CHUNK;
         let mut walks = Vec::with_capacity(CHUNK as usize);
         for index in first..(first + CHUNK).min(self.count) {
-            let mut sampler = Sampler::new(self.seed, self.kind, u64::from(self.pass), index);
+            let (point, density, sampler) = self.start(index);
             counters.photons.emitted += 1;
-            if let Some(start) = lights.emit(world, &mut sampler) {
-                let flux = start.flux / self.count as f32;
+            if let Some(start) = lights.emit(world, &point) {
+                let flux = start.flux / (density * self.count as f32);
                 add(&mut counters.photons.power.emitted, flux);
-                walks.push(Walk { ray: start.ray, flux, depth: 0, specular_only: true, sampler });
+                walks.push(Walk { index, density, ray: start.ray, flux, depth: 0, specular_only: true, sampler });
             }
         }
         counters.rays.emitted += walks.len() as u64;
@@ -171,13 +214,15 @@ impl PhotonPass {
         let choice = walk.sampler.next_1d();
         let survival = walk.sampler.next_1d();
         let u = walk.sampler.next_2d();
-        let guided = outside(lights.region(), point.position) && lights.aims() && bsdf.has(LobeSet::NON_DELTA);
-        let sample = if guided {
+        let far = outside(lights.region(), point.position) && lights.aims() && bsdf.has(LobeSet::NON_DELTA);
+        let sample = if far {
             guided_sample(&bsdf, lights.region(), point.position, choice, u)
         } else {
             bsdf.sample(LobeSet::ALL, choice, u, TransportMode::Importance)
                 .map(|s| (s.wi, s.weight, s.kind.intersects(LobeSet::CONTINUE)))
         };
+        // Photons for caustics alone scatter as all others, so that both agree on what is a caustic.
+        let sample = sample.filter(|&(.., specular)| specular || self.keep != Keep::Caustic);
         let Some((wi, weight, specular)) = sample else {
             counters.photons.absorbed += 1;
             add(&mut counters.photons.power.absorbed, walk.flux);
@@ -209,7 +254,12 @@ impl PhotonPass {
         counters: &mut Counters,
     ) {
         let caustic = walk.specular_only && walk.depth > 1;
-        if self.keep == Keep::Indirect && walk.depth == 1 {
+        let wanted = match self.keep {
+            Keep::All => true,
+            Keep::Indirect => walk.depth > 1,
+            Keep::Caustic => caustic,
+        };
+        if !wanted {
             return;
         }
         // A density counts flux over the face; scattering is defined over the shading normal. Their ratio here lets
@@ -217,14 +267,28 @@ impl PhotonPass {
         let facing = point.geometric_normal.dot(wo);
         let ratio = (bsdf.shading_normal().dot(wo) / facing).abs().min(8.0);
         let normal = if facing >= 0.0 { point.geometric_normal } else { -point.geometric_normal };
-        let flux = walk.flux * if ratio.is_finite() { ratio } else { 1.0 };
+        let weight = match self.together {
+            Some(both) if caustic => {
+                let aimed = match self.guide {
+                    Some(_) => walk.density,
+                    None => both.guide.density(&self.start(walk.index).0),
+                };
+                both.weight(self.count, walk.density, aimed)
+            }
+            _ => 1.0,
+        };
+        let arriving = walk.flux * weight;
+        let flux = arriving * if ratio.is_finite() { ratio } else { 1.0 };
         let Ok(photon) = Photon::new(point.position, flux, wo, normal, walk.depth, caustic) else {
             return;
         };
-        add(&mut counters.photons.power.stored, walk.flux);
+        add(&mut counters.photons.power.stored, arriving);
         counters.photons.stored += 1;
-        if caustic && self.keep == Keep::Indirect {
+        if caustic && self.keep != Keep::All {
             counters.photons.stored_caustic += 1;
+            if self.kind == StreamKind::Pilot {
+                stored.origins.push(walk.index);
+            }
             stored.caustic.push(photon);
         } else {
             stored.global.push(photon);

@@ -3,6 +3,7 @@
 
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::camera::CameraModel;
+use crate::caustic_plan::{self, CausticPlan};
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
 use crate::light::{Lights, SkyView, VisibleRegion, cosine_hemisphere};
@@ -12,7 +13,7 @@ use crate::twin::Twin;
 use crate::world::World;
 use photinus_geometry::{Frame, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
-use photinus_photons::{BuildOptions, Photon};
+use photinus_photons::{BuildOptions, Photon, Search};
 
 /// Points looked at along each axis of the picture.
 const GRID: u32 = 48;
@@ -22,7 +23,7 @@ const CLEAR_SURFACES: u32 = 6;
 /// Photons sent out by the pilot at most.
 const PHOTONS: u32 = 50_000;
 /// Neighbours whose distance measures density.
-const NEIGHBORS: usize = 32;
+pub(crate) const NEIGHBORS: usize = 32;
 /// Photons at which the density of the caustic map is measured.
 const CAUSTIC_PROBES: usize = 1024;
 /// Photons that an estimate of the first pass should find, for light after a diffuse bounce and for caustics.
@@ -47,11 +48,12 @@ pub(crate) struct Radii {
 }
 
 /// What the pilot photons said.
-#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PhotonOutlook {
     pub radii: Radii,
-    /// Photons stored for each one emitted.
-    pub stored: f32,
+    /// Photons stored by a pass.
+    pub stored: u64,
+    /// Photons of their own for caustics, where those are seen.
+    pub caustics: Option<CausticPlan>,
 }
 
 /// Follows one ray for each cell of a grid over the picture to the first surface that keeps photons.
@@ -180,23 +182,40 @@ pub(crate) fn photon_outlook(
     observer: &dyn Observer,
 ) -> Result<PhotonOutlook, Cancelled> {
     let count = photons.min(PHOTONS);
-    let pilot = PhotonPass { kind: StreamKind::Pilot, pass: 0, count, profile_every: 0, ..pass };
-    let (stored, counters) = pilot.run(world, lights, observer)?;
-    let share = counters.photons.stored as f32 / count.max(1) as f32;
+    let pilot =
+        PhotonPass { kind: StreamKind::Pilot, pass: 0, count, guide: None, together: None, profile_every: 0, ..pass };
+    let (mut stored, counters) = pilot.run(world, lights, observer)?;
+    let per_pass = |stored: u64| (stored as f64 * f64::from(photons) / f64::from(count.max(1))) as u64;
+    let all = per_pass(counters.photons.stored);
+    let global_search = search(std::mem::take(&mut stored.global));
     let scale = |target: f32| (target / NEIGHBORS as f32 * count as f32 / photons as f32).sqrt();
     let width = median(points.iter().map(|p| p.width)).unwrap_or(0.0);
     let fallback = 0.02 * lights.region().radius;
     let positions: Vec<Vec3> = points.iter().map(|p| p.position).collect();
-    let caustic_positions = spread(&stored.caustic);
-    let global = typical_distance(&positions, stored.global, 0.5).map(|r| r * scale(GLOBAL_TARGET));
-    let caustic = typical_distance(&caustic_positions, stored.caustic, 0.5).map(|r| r * scale(CAUSTIC_TARGET));
+    let global = typical_distance(&positions, global_search.as_deref(), 0.5).map(|r| r * scale(GLOBAL_TARGET));
     let global = global.unwrap_or(fallback).max(width).max(1e-9);
     if pass.keep == Keep::All {
-        return Ok(PhotonOutlook { radii: Radii { global, caustic: global }, stored: share });
+        return Ok(PhotonOutlook { radii: Radii { global, caustic: global }, stored: all, caustics: None });
     }
-    // A caustic needs no finer radius than a pixel, and where it is as smooth as the rest no wider one than that.
+    let global_search = global_search.as_deref();
+    if let Some(plan) = caustic_plan::plan(world, lights, points, pilot, &stored, global_search, photons, observer)? {
+        // Where a caustic is as smooth as the rest it needs no wider radius than that.
+        let radii = Radii { global, caustic: plan.radius.min(global) };
+        let own = (f64::from(plan.stored) * f64::from(plan.count)) as u64;
+        return Ok(PhotonOutlook { radii, stored: all + own, caustics: Some(plan) });
+    }
+    let probes = spread(&stored.caustic);
+    let caustic = typical_distance(&probes, search(stored.caustic).as_deref(), 0.5).map(|r| r * scale(CAUSTIC_TARGET));
     let caustic = caustic.unwrap_or(global).clamp((0.7 * width).min(global), global);
-    Ok(PhotonOutlook { radii: Radii { global, caustic }, stored: share })
+    Ok(PhotonOutlook { radii: Radii { global, caustic }, stored: all, caustics: None })
+}
+
+/// A search over pilot photons; none where they are few.
+fn search(photons: Vec<Photon>) -> Option<Box<dyn Search>> {
+    if photons.len() < NEIGHBORS * 2 {
+        return None;
+    }
+    photinus_photons::build(photinus_photons::DEFAULT_SEARCH, photons, &BuildOptions::default()).ok()
 }
 
 /// Positions of evenly chosen photons.
@@ -206,11 +225,11 @@ fn spread(photons: &[Photon]) -> Vec<Vec3> {
 }
 
 /// Quantile of the distance to the farthest of [`NEIGHBORS`] photons, over `positions`; none where photons are few.
-fn typical_distance(positions: &[Vec3], photons: Vec<Photon>, quantile: f32) -> Option<f32> {
-    if photons.len() < NEIGHBORS * 2 || positions.is_empty() {
+fn typical_distance(positions: &[Vec3], search: Option<&dyn Search>, quantile: f32) -> Option<f32> {
+    let search = search?;
+    if positions.is_empty() {
         return None;
     }
-    let search = photinus_photons::build(photinus_photons::DEFAULT_SEARCH, photons, &BuildOptions::default()).ok()?;
     let mut found = Vec::new();
     let mut distances: Vec<f32> = positions
         .iter()
@@ -224,7 +243,7 @@ fn typical_distance(positions: &[Vec3], photons: Vec<Photon>, quantile: f32) -> 
     (distance > 0.0 && distance.is_finite()).then_some(distance)
 }
 
-fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
+pub(crate) fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     let mut values: Vec<f32> = values.collect();
     values.sort_unstable_by(f32::total_cmp);
     values.get(values.len() / 2).copied()

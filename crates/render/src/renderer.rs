@@ -1,6 +1,7 @@
 //! A render, pass by pass: photon pass, map build, eye pass, film.
 
 use crate::camera::CameraModel;
+use crate::caustic_plan::CausticPlan;
 use crate::control::{Cancelled, Observer, Phase};
 use crate::counters::Counters;
 use crate::direct::DEFAULT_LEVELS;
@@ -10,7 +11,7 @@ use crate::film_filter::FilterSampler;
 use crate::light::Lights;
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
-use crate::photon_pass::{Keep, PhotonPass, StoredPhotons};
+use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
 use crate::world::World;
@@ -43,8 +44,10 @@ pub struct Renderer<'w> {
     photons: u32,
     lights: Lights,
     radii: Radii,
-    /// Photons stored for each one emitted, by the pilot.
-    stored_share: f32,
+    /// Photons of their own for caustics.
+    caustics: Option<CausticPlan>,
+    /// Photons stored by a pass, by the pilot.
+    stored: u64,
     /// Light covers so much of the view that diffuse surfaces look for it by chance too.
     probe: bool,
     /// Maps that all passes share, in the modes with one photon map.
@@ -86,7 +89,8 @@ impl<'w> Renderer<'w> {
             probe: lights.has_environment() || view.light_is_wide(),
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
-            stored_share: 0.0,
+            caustics: None,
+            stored: 0,
             shared_maps: None,
             film: Film::new(0),
             partial: None,
@@ -96,9 +100,9 @@ impl<'w> Renderer<'w> {
         renderer.film = Film::new(pixels * renderer.layout.channels());
         if renderer.settings.mode != Mode::Path {
             let pass = renderer.photon_pass(0);
-            let PhotonOutlook { radii, stored } =
+            let PhotonOutlook { radii, stored, caustics } =
                 pilot::photon_outlook(world, &renderer.lights, &points, pass, photons, observer)?;
-            renderer.stored_share = stored;
+            (renderer.stored, renderer.caustics) = (stored, caustics);
             renderer.radii = match renderer.settings.radius {
                 Some(radius) => Radii { global: radius, caustic: radius },
                 None => radii,
@@ -144,15 +148,14 @@ impl<'w> Renderer<'w> {
 
     /// What the render will hold at its peak in `passes` passes, which may be a guess, beside the world itself.
     pub fn predicted_memory(&self, passes: u32, is_guess: bool) -> RenderMemory {
-        let stored = (f64::from(self.photons) * f64::from(self.stored_share)) as u64;
         let pixels = u64::from(self.crop[2]) * u64::from(self.crop[3]);
         RenderMemory::predict(&Ahead {
             values: pixels * self.layout.channels() as u64,
             passes,
             is_guess,
-            stored,
+            stored: self.stored,
             maps_once: matches!(self.settings.mode, Mode::Gather | Mode::Direct),
-            lights: self.lights.bytes() as u64,
+            lights: (self.lights.bytes() + self.caustics.as_ref().map_or(0, |plan| plan.guide.bytes())) as u64,
         })
     }
 
@@ -161,7 +164,7 @@ impl<'w> Renderer<'w> {
         &self.lights
     }
 
-    fn photon_pass(&self, pass: u32) -> PhotonPass {
+    fn photon_pass(&self, pass: u32) -> PhotonPass<'_> {
         PhotonPass {
             seed: self.settings.seed,
             kind: StreamKind::Photon,
@@ -170,6 +173,12 @@ impl<'w> Renderer<'w> {
             // The estimate's own edge to the camera is the last one.
             max_depth: if self.settings.mode == Mode::Direct { 127 } else { self.max_depth.saturating_sub(1) },
             keep: if self.settings.mode == Mode::Direct { Keep::All } else { Keep::Indirect },
+            guide: None,
+            together: self.caustics.as_ref().map(|plan| Together {
+                guide: &plan.guide,
+                plain: self.photons,
+                aimed: plan.count,
+            }),
             profile_every: self.settings.profile_every,
         }
     }
@@ -240,8 +249,22 @@ impl<'w> Renderer<'w> {
 
     fn build_maps(&mut self, pass: u32, radii: Radii, observer: &dyn Observer) -> Result<Maps, RenderError> {
         observer.begin(Phase::PhotonPass, pass);
-        let (StoredPhotons { global, caustic }, counters) =
-            self.photon_pass(pass).run(self.world, &self.lights, observer)?;
+        let photon_pass = self.photon_pass(pass);
+        let (StoredPhotons { global, mut caustic, .. }, mut counters) =
+            photon_pass.run(self.world, &self.lights, observer)?;
+        if let Some(plan) = &self.caustics {
+            let own = PhotonPass {
+                kind: StreamKind::CausticPhoton,
+                count: plan.count,
+                keep: Keep::Caustic,
+                guide: Some(&plan.guide),
+                ..photon_pass
+            };
+            let (stored, counted) = own.run(self.world, &self.lights, observer)?;
+            caustic.reserve_exact(stored.caustic.len());
+            caustic.extend(stored.caustic);
+            counters += counted;
+        }
         self.counters += counters;
         observer.begin(Phase::MapBuild, pass);
         let kernel = if self.settings.mode == Mode::Progressive { Kernel::Epanechnikov } else { Kernel::Constant };

@@ -205,6 +205,19 @@ fn photon_power_is_accounted_for() {
         let photons = counters.photons;
         assert_eq!(photons.emitted, photons.absorbed + photons.escaped + photons.cut);
         assert!(photons.stored_caustic > 0 && photons.stored > photons.stored_caustic);
+        let caustic = counters.caustic_photons;
+        assert_eq!(caustic.emitted, caustic.absorbed + caustic.escaped + caustic.cut);
+        assert!(caustic.stored == caustic.stored_caustic);
+        // Aimed photons land where caustics are far more often than unaimed ones.
+        let share = |p: photinus_render::PhotonCounts| p.stored_caustic as f64 / p.emitted as f64;
+        assert!(share(caustic) > 3.0 * share(photons), "{} {}", share(caustic), share(photons));
+        for c in 0..3 {
+            let power = caustic.power;
+            let sum = power.absorbed[c] + power.escaped[c] + power.cut[c];
+            assert!((sum / power.emitted[c] - 1.0).abs() < 1e-4, "channel {c}: {power:?}");
+            // An estimate of the lamp's power too, if a noisy one: few photons start where nothing makes caustics.
+            assert!((power.emitted[c] / (f64::from(PI) * 10.0 * 0.36) - 1.0).abs() < 0.1, "channel {c}: {power:?}");
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use photinus_accel::StructureSummary;
 use photinus_profile::{
     AccelProfile, IntersectProfile, PhotonProfile, Profile, ProfileSeconds, RayProfile, SearchProfile,
 };
-use photinus_render::{Counters, PhotonPower, RayCounts, Settings};
+use photinus_render::{Counters, PhotonCounts, PhotonPower, RayCounts, Settings};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -116,6 +116,8 @@ pub struct Stats {
     pub search: SearchProfile,
     /// Photons.
     pub photons: PhotonStats,
+    /// Photons sent out for caustics alone.
+    pub caustic_photons: PhotonStats,
     /// Thread seconds of what is neither test, traversal nor search, by function.
     pub other: BTreeMap<String, f64>,
     /// Memory.
@@ -177,8 +179,7 @@ impl RayStats {
 }
 
 impl PhotonStats {
-    pub(super) fn of(counters: &Counters) -> Self {
-        let photons = &counters.photons;
+    pub(super) fn of(photons: &PhotonCounts) -> Self {
         Self {
             emitted: photons.emitted,
             stored: photons.stored,

@@ -2,13 +2,13 @@
 
 use super::alias::AliasTable;
 use super::area::{cosine_hemisphere, uniform_cone, uniform_sphere, uniform_triangle};
+use super::emission::{EmissionPoint, LightChoice};
 use super::environment::Environment;
 use super::sky_view::SkyView;
 use super::sphere;
 use crate::camera::uniform_disk;
 use crate::{SurfacePoint, world::World};
 use photinus_geometry::{Frame, Ray, Vec3};
-use photinus_num::Sampler;
 use photinus_scene::Light;
 use std::f32::consts::{PI, TAU};
 
@@ -59,6 +59,7 @@ enum Emitter {
 pub struct Lights {
     emitters: Vec<Emitter>,
     table: AliasTable,
+    emission: LightChoice,
     /// For each shape, the emitter of its first primitive; `u32::MAX`: it emits nothing.
     first_emitter: Vec<u32>,
     environment: Option<(Environment, usize)>,
@@ -122,9 +123,10 @@ impl Lights {
             emitters.push(emitter);
             powers.push(if power.is_finite() { power } else { 0.0 });
         }
-        let table = AliasTable::new(&powers);
+        let (table, emission) = (AliasTable::new(&powers), LightChoice::new(&powers));
         let from_infinity = emitters.iter().any(|e| matches!(e, Emitter::Directional { .. } | Emitter::Environment));
-        Self { emitters, table, first_emitter, environment, region, rings: rings(world, region), from_infinity }
+        let rings = rings(world, region);
+        Self { emitters, table, emission, first_emitter, environment, region, rings, from_infinity }
     }
 
     /// Whether the scene is dark.
@@ -149,7 +151,7 @@ impl Lights {
 
     /// Bytes of the tables.
     pub fn bytes(&self) -> usize {
-        self.emitters.len() * (size_of::<Emitter>() + 12) + self.environment.as_ref().map_or(0, |(e, _)| e.bytes())
+        self.emitters.len() * (size_of::<Emitter>() + 20) + self.environment.as_ref().map_or(0, |(e, _)| e.bytes())
     }
 
     /// Radiance from infinity, looking along `dir`.
@@ -288,17 +290,10 @@ impl Lights {
         useful.then_some(sample)
     }
 
-    /// Starts a photon; none where the choice emits nothing.
-    pub(crate) fn emit(&self, world: &World, sampler: &mut Sampler) -> Option<PhotonStart> {
-        if self.table.is_empty() {
-            return None;
-        }
-        let place = sampler.next_2d();
-        let way = sampler.next_2d();
-        let (index, probability, rest) = self.table.sample(sampler.next_1d());
-        if probability <= 0.0 {
-            return None;
-        }
+    /// Starts a photon from numbers that are uniform over the cube; none where they choose what emits nothing.
+    pub(crate) fn emit(&self, world: &World, point: &EmissionPoint) -> Option<PhotonStart> {
+        let (place, way) = (point.place(), point.direction());
+        let (index, probability, rest) = self.emission.at(point.light())?;
         let (ray, flux) = match &self.emitters[index] {
             Emitter::Triangle { prim } => {
                 let [alpha, beta] = uniform_triangle(place);
@@ -319,13 +314,13 @@ impl Lights {
                 (Ray::new(*position, frame.to_world(local)), *intensity * (factor * TAU * one_minus_cos))
             }
             Emitter::Directional { direction, irradiance } => {
-                let (ray, density) = self.start_outside(*direction, place, sampler.next_1d());
+                let (ray, density) = self.start_outside(*direction, place, point.disc());
                 (ray, *irradiance / density)
             }
             Emitter::Environment => {
                 let (environment, _) = self.environment.as_ref()?;
                 let (dir, pdf) = environment.sample(rest, way);
-                let (ray, density) = self.start_outside(-dir, place, sampler.next_1d());
+                let (ray, density) = self.start_outside(-dir, place, point.disc());
                 (ray, environment.radiance(dir) / (pdf * density))
             }
         };

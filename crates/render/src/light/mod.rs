@@ -2,6 +2,8 @@
 
 mod alias;
 mod area;
+mod emission;
+mod emission_guide;
 mod environment;
 mod lights;
 mod sky_view;
@@ -9,6 +11,8 @@ mod sphere;
 
 pub(crate) use area::cosine_hemisphere;
 pub(crate) use area::uniform_cone;
+pub(crate) use emission::EmissionPoint;
+pub(crate) use emission_guide::{Arrival, EmissionGuide};
 pub use lights::{LightSample, Lights, PhotonStart, VisibleRegion};
 pub(crate) use sky_view::SkyView;
 pub(crate) use sphere::cone as sphere_cone;
