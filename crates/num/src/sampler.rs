@@ -21,6 +21,9 @@ pub enum StreamKind {
     CausticPhoton = 6,
     /// Which queries are counted: it never reaches a picture.
     Twin = 7,
+    /// Directions to the sky that a pass draws from: the stream is the part of the sky, the index the direction (over all
+    /// passes).
+    Sky = 8,
 }
 
 /// Dimensions beyond this many draw plain random numbers: long paths gain nothing from stratification.

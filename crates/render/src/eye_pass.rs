@@ -8,7 +8,7 @@ use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::film::{Aov, FilmLayout};
 use crate::film_filter::FilterSampler;
-use crate::light::Lights;
+use crate::light::{Lights, Place};
 use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
 use crate::trace::{Tracer, shadow_ray};
 use crate::twin::{Queries, Twin};
@@ -42,6 +42,8 @@ pub(crate) struct EyePass<'a> {
     pub probe: bool,
     /// One query in this many is counted, see [`Twin`].
     pub profile_every: u32,
+    /// Shadow rays from each surface that is seen, directly or by mirrors; one from those after a diffuse bounce.
+    pub shadow_rays: u32,
 }
 
 /// Which picture a contribution belongs to.
@@ -67,6 +69,10 @@ pub(crate) struct Path {
     /// Density of the last direction and where it started; infinite after a mirror or the camera.
     last_pdf: f32,
     last_position: Vec3,
+    /// Choice of lights that held there.
+    last_place: Place,
+    /// Shadow rays that were sent there.
+    last_shadows: f32,
     /// Diffuse bounces, and mirror-like ones after the last of them.
     diffuse: u32,
     mirrors: u32,
@@ -249,6 +255,8 @@ impl EyePass<'_> {
                 spread: start.spread,
                 last_pdf: f32::INFINITY,
                 last_position: start.ray.origin,
+                last_place: Place::ANY,
+                last_shadows: 0.0,
                 diffuse: 0,
                 mirrors: 0,
                 eta_sq: 1.0,
@@ -316,7 +324,8 @@ impl EyePass<'_> {
         let weight = if path.last_pdf.is_infinite() {
             1.0
         } else {
-            power_heuristic(path.last_pdf, self.lights.environment_pdf(path.ray.dir))
+            let rival = self.lights.environment_pdf(path.last_place, path.ray.dir);
+            power_heuristic(path.last_pdf, path.last_shadows * rival)
         };
         tile.add(path.pixel, path.part(), path.throughput * radiance * weight);
     }
@@ -339,7 +348,8 @@ impl EyePass<'_> {
             let weight = if path.last_pdf.is_infinite() {
                 1.0
             } else {
-                power_heuristic(path.last_pdf, self.lights.area_pdf(self.world, path.last_position, point))
+                let rival = self.lights.area_pdf(self.world, path.last_position, path.last_place, point);
+                power_heuristic(path.last_pdf, path.last_shadows * rival)
             };
             tile.add(path.pixel, path.part(), path.throughput * emitted * weight);
         }
@@ -356,6 +366,9 @@ impl EyePass<'_> {
         }
         path.sampler.start_vertex();
         if bsdf.has(LobeSet::NON_DELTA) {
+            let normal =
+                if point.geometric_normal.dot(wo) >= 0.0 { point.geometric_normal } else { -point.geometric_normal };
+            path.last_place = self.lights.place(point.position, normal);
             self.light(&mut path, point, &bsdf, shadows);
         }
         if self.maps.is_some() && bsdf.has(LobeSet::GATHER) {
@@ -364,29 +377,58 @@ impl EyePass<'_> {
         self.bounce(path, point, &bsdf, next);
     }
 
-    /// Direct light by a shadow ray to one light.
+    /// Direct light by shadow rays, the choice of lights stratified over them.
     fn light(&self, path: &mut Path, point: &SurfacePoint, bsdf: &Bsdf, shadows: &mut Vec<Shadow>) {
         let (u, choice) = (path.sampler.next_2d(), path.sampler.next_1d());
-        let Some(light) = self.lights.sample(self.world, point.position, choice, u) else { return };
+        let count = if path.diffuse == 0 { self.shadow_rays } else { 1 };
+        path.last_shadows = count as f32;
+        for i in 0..count {
+            // Steps of the plastic number's powers fill the square evenly (Roberts 2018, the R2 sequence).
+            let step = |u: f32, by: f32| (u + i as f32 * by).fract();
+            let u = [step(u[0], 0.754_877_7), step(u[1], 0.569_840_3)];
+            let choice = ((i as f32 + choice) / count as f32).min(0.999_999_94);
+            self.light_once(path, point, bsdf, choice, u, shadows);
+        }
+    }
+
+    fn light_once(
+        &self,
+        path: &Path,
+        point: &SurfacePoint,
+        bsdf: &Bsdf,
+        choice: f32,
+        u: [f32; 2],
+        shadows: &mut Vec<Shadow>,
+    ) {
+        let Some(light) = self.lights.sample(self.world, point.position, path.last_place, choice, u) else { return };
+        let density = light.pdf * path.last_shadows;
+        let traced = self.maps.is_none();
         let part = |set: LobeSet, diffuse: bool| {
             if !bsdf.has(set & LobeSet::NON_DELTA) {
                 return (Vec3::ZERO, Part::Direct);
             }
             let value = bsdf.eval(set, light.dir, TransportMode::Radiance);
-            let rival = if light.delta || (diffuse && self.maps.is_some() && !self.probe) {
+            let rival = if light.delta || (diffuse && !traced && !self.probe) {
                 0.0
-            } else if self.maps.is_some() {
+            } else if diffuse && !traced {
                 bsdf.pdf(set, light.dir)
             } else {
-                bsdf.pdf(LobeSet::ALL, light.dir)
+                // What a bounce finds also has to survive.
+                let (set, value) = if traced {
+                    (LobeSet::ALL, bsdf.eval(LobeSet::ALL, light.dir, TransportMode::Radiance))
+                } else {
+                    (set, value)
+                };
+                let pdf = bsdf.pdf(set, light.dir);
+                pdf * survival(path.depth, path.throughput * value / pdf.max(1e-20))
             };
-            let weight = power_heuristic(light.pdf, rival);
+            let weight = power_heuristic(density, rival);
             let part = match (path.diffuse, diffuse) {
                 (0, _) => Part::Direct,
                 (1, false) => Part::Caustic,
                 _ => Part::Indirect,
             };
-            (path.throughput * value * light.radiance * (weight / light.pdf), part)
+            (path.throughput * value * light.radiance * (weight / density), part)
         };
         let (diffuse, glossy) = (part(LobeSet::GATHER, true), part(LobeSet::CONTINUE, false));
         if diffuse.0.max_element() > 0.0 || glossy.0.max_element() > 0.0 {
@@ -445,20 +487,17 @@ impl EyePass<'_> {
             return;
         }
         let choice = path.sampler.next_1d();
-        let survival = path.sampler.next_1d();
+        let chance = path.sampler.next_1d();
         let u = path.sampler.next_2d();
         let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { return };
         let throughput = path.throughput * s.weight;
         let strength = throughput.max_element() * path.eta_sq * s.eta * s.eta;
-        // Weak reflections, as of a coat over a diffuse base, are followed in proportion; the eye forgives noise
-        // there more than it forgives their absence.
-        let keep = match path.depth {
-            0..=3 => (3.0 * strength).min(1.0),
-            _ => strength.min(0.95),
-        };
-        if !(survival < keep) {
+        let keep = survival(path.depth, Vec3::splat(strength));
+        if !(chance < keep) {
             return;
         }
+        // The same survival as shadow rays reckon with, which do not know the scaling at refraction.
+        let found = survival(path.depth, throughput);
         path.throughput = throughput / keep;
         path.eta_sq *= s.eta * s.eta;
         if s.kind.intersects(LobeSet::GATHER) {
@@ -468,7 +507,7 @@ impl EyePass<'_> {
         } else if path.diffuse > 0 {
             path.mirrors += 1;
         }
-        path.last_pdf = if s.kind.intersects(LobeSet::DELTA) { f32::INFINITY } else { s.pdf };
+        path.last_pdf = if s.kind.intersects(LobeSet::DELTA) { f32::INFINITY } else { s.pdf * found };
         path.last_position = point.position;
         path.ray = Ray::new(point.ray_origin(s.wi), s.wi);
         next.push(path);
@@ -547,4 +586,13 @@ fn power_heuristic(mine: f32, other: f32) -> f32 {
     }
     let ratio = other / mine;
     1.0 / (1.0 + ratio * ratio)
+}
+
+/// Probability that a bounce of this throughput is followed. Weak reflections, as of a coat over a diffuse base, are
+/// followed in proportion; the eye forgives noise there more than it forgives their absence.
+fn survival(depth: u32, throughput: Vec3) -> f32 {
+    match depth {
+        0..=3 => (5.0 * throughput.max_element()).min(1.0),
+        _ => throughput.max_element().min(0.95),
+    }
 }

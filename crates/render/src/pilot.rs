@@ -16,9 +16,9 @@ use photinus_num::{Sampler, StreamKind};
 use photinus_photons::{BuildOptions, Photon, Search};
 
 /// Points looked at along each axis of the picture.
-const GRID: u32 = 48;
+const GRID: u32 = 128;
 /// Rays to the sky from each point, and clear surfaces that one may cross.
-const SKY_RAYS: u32 = 24;
+const SKY_RAYS: u32 = 3;
 const CLEAR_SURFACES: u32 = 6;
 /// Photons sent out by the pilot at most.
 const PHOTONS: u32 = 50_000;
@@ -38,6 +38,8 @@ pub(crate) struct VisiblePoint {
     pub normal: Vec3,
     /// Width of a pixel there.
     pub width: f32,
+    /// How far rays from there must start above the surface.
+    pub lift: f32,
 }
 
 /// First radii of the maps, scene units.
@@ -88,7 +90,12 @@ pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4]
             let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, &point, wo);
             if bsdf.has(LobeSet::GATHER) {
                 let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
-                points.push(VisiblePoint { position: point.position, normal: point.geometric_normal * side, width });
+                points.push(VisiblePoint {
+                    position: point.position,
+                    normal: point.geometric_normal * side,
+                    width,
+                    lift: point.position.abs().max_element() * 1e-5 + 0.01 * width,
+                });
                 continue;
             }
             sampler.start_vertex();
@@ -115,8 +122,7 @@ pub(crate) fn sky_view(world: &World, points: &[VisiblePoint], seed: u64) -> Sky
         for j in 0..SKY_RAYS {
             let mut sampler = Sampler::new(seed, StreamKind::Pilot, 2 << 40, i as u32 * SKY_RAYS + j);
             let (local, _) = cosine_hemisphere(sampler.next_2d());
-            let lift = point.normal * (point.position.abs().max_element() * 1e-5 + 0.01 * point.width);
-            rays.push(Ray::new(point.position + lift, frame.to_world(local)));
+            rays.push(Ray::new(point.position + point.normal * point.lift, frame.to_world(local)));
             samplers.push(sampler);
         }
     }

@@ -8,7 +8,7 @@ use crate::direct::DEFAULT_LEVELS;
 use crate::eye_pass::EyePass;
 use crate::film::{Aov, Film, FilmLayout};
 use crate::film_filter::FilterSampler;
-use crate::light::Lights;
+use crate::light::{LightGuide, Lights, shadow_rays};
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
@@ -50,6 +50,8 @@ pub struct Renderer<'w> {
     stored: u64,
     /// Light covers so much of the view that diffuse surfaces look for it by chance too.
     probe: bool,
+    /// Shadow rays of each visible point.
+    shadow_rays: u32,
     /// Maps that all passes share, in the modes with one photon map.
     shared_maps: Option<Maps>,
     film: Film,
@@ -78,6 +80,9 @@ impl<'w> Renderer<'w> {
         let points = pilot::visible_points(world, &camera, crop, settings.seed);
         let view = pilot::sky_view(world, &points, settings.seed);
         let lights = Lights::new(world, pilot::visible_region(world, &points), &view);
+        let guide = LightGuide::learn(world, &lights, &points, &view, pixels, settings.seed, observer)?;
+        let lights = lights.guided(guide);
+        let shadow_rays = shadow_rays(world, &lights, &points, settings.seed);
         let mut renderer = Self {
             world,
             layout,
@@ -87,6 +92,7 @@ impl<'w> Renderer<'w> {
             max_depth,
             photons,
             probe: lights.has_environment() || view.light_is_wide(),
+            shadow_rays,
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
             caustics: None,
@@ -187,6 +193,7 @@ impl<'w> Renderer<'w> {
     /// the first pass has done is kept as the picture so far.
     pub fn render_pass(&mut self, observer: &dyn Observer) -> Result<(), RenderError> {
         let pass = self.film.passes();
+        self.lights.begin_pass(self.settings.seed, pass);
         let own_maps = match self.settings.mode {
             Mode::Path => None,
             Mode::Progressive => {
@@ -217,6 +224,7 @@ impl<'w> Renderer<'w> {
             maps,
             probe: self.probe,
             profile_every: self.settings.profile_every,
+            shadow_rays: self.shadow_rays,
         };
         let result = match (self.settings.mode, maps) {
             (Mode::Direct, Some(maps)) => eye.run_direct(maps, &mut buffer, observer),

@@ -34,6 +34,11 @@ impl AliasTable {
         self.columns.is_empty()
     }
 
+    /// Number of indices.
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+
     /// An index, its probability, and what is left of `u` as a fresh number in 0..1.
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32, f32) {

@@ -1,16 +1,18 @@
 //! All lights of a scene behind one choice.
 
 use super::alias::AliasTable;
-use super::area::{cosine_hemisphere, uniform_cone, uniform_sphere, uniform_triangle};
+use super::clusters::{Clusters, Member};
 use super::emission::{EmissionPoint, LightChoice};
+use super::emitter::{Emitter, mean};
 use super::environment::Environment;
+use super::guide::{LightGuide, Place};
+use super::sky_pool::SkyPool;
 use super::sky_view::SkyView;
-use super::sphere;
 use crate::camera::uniform_disk;
 use crate::{SurfacePoint, world::World};
 use photinus_geometry::{Frame, Ray, Vec3};
 use photinus_scene::Light;
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 /// The part of the scene that matters to the picture: photons from infinity are aimed at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,29 +47,48 @@ pub struct PhotonStart {
     pub flux: Vec3,
 }
 
-#[derive(Clone, Debug)]
-enum Emitter {
-    Triangle { prim: u32 },
-    Sphere { prim: u32 },
-    Point { position: Vec3, intensity: Vec3 },
-    Spot { position: Vec3, frame: Frame, intensity: Vec3, cutoff: f32, beam: f32, one_minus_cos: f32 },
-    Directional { direction: Vec3, irradiance: Vec3 },
-    Environment,
+/// Widest part of an emitter, over the radius of the visible region.
+const PART: f32 = 0.1;
+
+/// Light from one direction.
+#[derive(Clone, Copy, Debug)]
+struct Distant {
+    direction: Vec3,
+    irradiance: Vec3,
+}
+
+/// What one number chooses: a group of emitters, a distant light, or a bin of the sky.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Item {
+    Group(usize),
+    Distant(usize),
+    Sky(usize),
 }
 
 /// The lights of a scene.
 pub struct Lights {
     emitters: Vec<Emitter>,
+    /// Parts of all emitters, in order: which emitter, which part.
+    parts: Vec<(u32, u32)>,
+    /// First part of each emitter.
+    first_part: Vec<u32>,
+    /// Groups of parts.
+    clusters: Clusters,
+    distant: Vec<Distant>,
+    sky: Option<Environment>,
+    /// Over the items, groups first, then distant lights, then bins of the sky: by power.
     table: AliasTable,
+    /// The choice of where a photon starts: emitters first, then distant lights, then bins of the sky: by power.
     emission: LightChoice,
+    /// The choice by place, where one was learned.
+    guide: Option<LightGuide>,
+    /// The pass's stock of directions to a sky that is a picture.
+    pool: Option<SkyPool>,
     /// For each shape, the emitter of its first primitive; `u32::MAX`: it emits nothing.
     first_emitter: Vec<u32>,
-    environment: Option<(Environment, usize)>,
     region: VisibleRegion,
     /// Radii of the discs that photons from infinity start on, with the share of each.
     rings: Vec<(f32, f32)>,
-    /// Some light comes from infinity.
-    from_infinity: bool,
 }
 
 impl Lights {
@@ -75,58 +96,117 @@ impl Lights {
     /// the share of it that `view` finds open.
     pub(crate) fn new(world: &World, region: VisibleRegion, view: &SkyView) -> Self {
         let mut emitters = Vec::new();
-        let mut powers = Vec::new();
         let mut first_emitter = vec![u32::MAX; world.shapes.len()];
         for (i, shape) in world.shapes.iter().enumerate() {
-            if shape.emission.is_none() {
-                continue;
-            }
-            first_emitter[i] = emitters.len() as u32;
-            for prim in shape.first_prim..shape.first_prim + shape.prim_count {
-                let (emitter, power) = area_emitter(world, prim);
-                emitters.push(emitter);
-                powers.push(power);
+            if shape.emission.is_some() {
+                first_emitter[i] = emitters.len() as u32;
+                let prims = shape.first_prim..shape.first_prim + shape.prim_count;
+                emitters.extend(prims.map(|prim| Emitter::of_primitive(world, prim, PART * region.radius)));
             }
         }
-        let disc = f64::from(PI) * f64::from(region.radius) * f64::from(region.radius);
-        let mut environment = None;
+        let (mut distant, mut sky) = (Vec::new(), None);
         for light in &world.lights {
-            let (emitter, power) = match light {
-                Light::Point { position, intensity } => (
-                    Emitter::Point { position: *position, intensity: *intensity },
-                    4.0 * f64::from(PI) * mean(*intensity),
-                ),
+            match light {
+                Light::Point { position, intensity } => {
+                    emitters.push(Emitter::Point { position: *position, intensity: *intensity });
+                }
                 Light::Spot { position, direction, intensity, cutoff_angle, beam_width } => {
-                    let cutoff = cutoff_angle.clamp(1e-4, PI);
-                    let half = libm::sinf(0.5 * cutoff);
-                    let one_minus_cos = 2.0 * half * half;
-                    let emitter = Emitter::Spot {
-                        position: *position,
-                        frame: Frame::from_normal(*direction),
-                        intensity: *intensity,
-                        cutoff,
-                        beam: beam_width.clamp(0.0, cutoff),
-                        one_minus_cos,
-                    };
-                    (emitter, f64::from(TAU * one_minus_cos) * mean(*intensity))
+                    emitters.push(Emitter::spot(*position, *direction, *intensity, *cutoff_angle, *beam_width));
                 }
                 Light::Directional { direction, irradiance } => {
-                    (Emitter::Directional { direction: *direction, irradiance: *irradiance }, disc * mean(*irradiance))
+                    distant.push(Distant { direction: *direction, irradiance: *irradiance });
                 }
-                Light::Environment(light) => {
-                    let field = Environment::new(light, view);
-                    let power = 4.0 * f64::from(PI) * disc * mean(field.mean()) * view.openness();
-                    environment = Some((field, emitters.len()));
-                    (Emitter::Environment, power)
-                }
-            };
-            emitters.push(emitter);
-            powers.push(if power.is_finite() { power } else { 0.0 });
+                Light::Environment(light) => sky = Some(Environment::new(light)),
+            }
         }
-        let (table, emission) = (AliasTable::new(&powers), LightChoice::new(&powers));
-        let from_infinity = emitters.iter().any(|e| matches!(e, Emitter::Directional { .. } | Emitter::Environment));
-        let rings = rings(world, region);
-        Self { emitters, table, emission, first_emitter, environment, region, rings, from_infinity }
+        let (mut parts, mut first_part) = (Vec::new(), Vec::new());
+        for (i, emitter) in emitters.iter().enumerate() {
+            first_part.push(parts.len() as u32);
+            parts.extend((0..emitter.parts()).map(|part| (i as u32, part)));
+        }
+        let members: Vec<Member> = parts
+            .iter()
+            .map(|&(i, part)| {
+                let emitter = &emitters[i as usize];
+                let (position, facing) = emitter.place(world, part);
+                let power = emitter.power(world, part);
+                let brightness = libm::logf((power as f32 / emitter.area(world)).clamp(1e-30, 1e30));
+                Member { position, facing, power, brightness }
+            })
+            .collect();
+        let clusters = Clusters::new(&members, 0.5 * region.radius);
+        let disc = f64::from(PI) * f64::from(region.radius) * f64::from(region.radius);
+        let mut powers: Vec<f64> = (0..clusters.len())
+            .map(|group| clusters.members(group).iter().map(|&i| members[i as usize].power).sum())
+            .collect();
+        let mut starts: Vec<f64> = vec![0.0; emitters.len()];
+        parts.iter().zip(&members).for_each(|(&(i, _), member)| starts[i as usize] += member.power);
+        let near = powers.len();
+        powers.extend(distant.iter().map(|d| disc * mean(d.irradiance)));
+        if let Some(sky) = &sky {
+            let bins = sky.bin_powers();
+            let weights: Vec<f64> = bins.iter().enumerate().map(|(b, p)| p * f64::from(view.factor(b))).collect();
+            let sum: f64 = weights.iter().sum();
+            let power = 4.0 * f64::from(PI) * disc * mean(sky.mean()) * view.openness();
+            powers.extend(weights.iter().map(|w| if sum > 0.0 { w / sum * power } else { 0.0 }));
+        }
+        powers.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = 0.0);
+        starts.extend(&powers[near..]);
+        let emission = LightChoice::new(if starts.iter().any(|&p| p > 0.0) { &starts } else { &[] });
+        let dark = powers.iter().all(|&p| p == 0.0);
+        let table = if dark { AliasTable::default() } else { AliasTable::new(&powers) };
+        Self {
+            emitters,
+            parts,
+            first_part,
+            clusters,
+            distant,
+            sky,
+            table,
+            emission,
+            guide: None,
+            pool: None,
+            first_emitter,
+            region,
+            rings: rings(world, region),
+        }
+    }
+
+    /// Chooses lights by place from now on.
+    pub(crate) fn guided(self, guide: Option<LightGuide>) -> Self {
+        Self { guide, ..self }
+    }
+
+    /// Makes the stock of directions to the sky that pass `pass` draws from.
+    pub(crate) fn begin_pass(&mut self, seed: u64, pass: u32) {
+        if let Some(sky @ Environment::Image(_)) = &self.sky {
+            self.pool = Some(SkyPool::new(sky, seed, pass));
+        }
+    }
+
+    /// Number of items to choose from; 0 where the scene is dark.
+    pub(crate) fn items(&self) -> usize {
+        self.table.len()
+    }
+
+    pub(crate) fn item(&self, index: usize) -> Item {
+        let (groups, distant) = (self.clusters.len(), self.distant.len());
+        if index < groups {
+            Item::Group(index)
+        } else if index < groups + distant {
+            Item::Distant(index - groups)
+        } else {
+            Item::Sky(index - groups - distant)
+        }
+    }
+
+    /// Probability of an item in the choice by power.
+    pub(crate) fn item_probability(&self, index: usize) -> f32 {
+        self.table.probability(index)
+    }
+
+    fn sky_item(&self, bin: usize) -> usize {
+        self.clusters.len() + self.distant.len() + bin
     }
 
     /// Whether the scene is dark.
@@ -141,146 +221,118 @@ impl Lights {
 
     /// Whether photons from infinity are aimed at a region smaller than the scene.
     pub(crate) fn aims(&self) -> bool {
-        self.rings.len() > 1 && self.from_infinity
+        self.rings.len() > 1 && (self.sky.is_some() || !self.distant.is_empty())
     }
 
     /// Whether light comes from all around.
     pub fn has_environment(&self) -> bool {
-        self.environment.is_some()
+        self.sky.is_some()
     }
 
     /// Bytes of the tables.
     pub fn bytes(&self) -> usize {
-        self.emitters.len() * (size_of::<Emitter>() + 20) + self.environment.as_ref().map_or(0, |(e, _)| e.bytes())
+        self.emitters.len() * (size_of::<Emitter>() + 12)
+            + self.parts.len() * 32
+            + self.sky.as_ref().map_or(0, |sky| sky.bytes() + SkyPool::bytes())
+            + self.guide.as_ref().map_or(0, LightGuide::bytes)
     }
 
     /// Radiance from infinity, looking along `dir`.
     pub fn environment_radiance(&self, dir: Vec3) -> Vec3 {
-        self.environment.as_ref().map_or(Vec3::ZERO, |(e, _)| e.radiance(dir))
+        self.sky.as_ref().map_or(Vec3::ZERO, |sky| sky.radiance(dir))
     }
 
-    /// Density with which `sample` chooses the direction `dir` to infinity.
-    pub fn environment_pdf(&self, dir: Vec3) -> f32 {
-        self.environment.as_ref().map_or(0.0, |(e, i)| self.table.probability(*i) * e.pdf(dir))
+    /// Which choice of lights holds at a point with its normal on the side that is lit.
+    pub(crate) fn place(&self, position: Vec3, normal: Vec3) -> Place {
+        self.guide.as_ref().map_or(Place::ANY, |guide| guide.place(position, normal))
     }
 
-    /// Density with which `sample` at `from` chooses the point `at` on an emitting shape, over solid angle.
-    pub(crate) fn area_pdf(&self, world: &World, from: Vec3, at: &SurfacePoint) -> f32 {
+    fn choose(&self, place: Place, u: f32) -> (usize, f32, f32) {
+        match &self.guide {
+            Some(guide) => guide.choose(&self.table, place, u),
+            None => self.table.sample(u),
+        }
+    }
+
+    fn probability(&self, place: Place, item: usize) -> f32 {
+        let overall = self.table.probability(item);
+        self.guide.as_ref().map_or(overall, |guide| guide.probability(overall, place, item))
+    }
+
+    /// Density with which `sample` at `place` chooses the direction `dir` to infinity.
+    pub(crate) fn environment_pdf(&self, place: Place, dir: Vec3) -> f32 {
+        self.sky.as_ref().map_or(0.0, |sky| {
+            let (bin, pdf) = sky.find(dir);
+            self.probability(place, self.sky_item(bin)) * pdf
+        })
+    }
+
+    /// Density with which `sample` at `from`, in `place`, chooses the point `at` on an emitting shape, over solid angle.
+    pub(crate) fn area_pdf(&self, world: &World, from: Vec3, place: Place, at: &SurfacePoint) -> f32 {
         let first = self.first_emitter[at.shape as usize];
         if first == u32::MAX {
             return 0.0;
         }
         let emitter = (first + at.prim - world.shapes[at.shape as usize].first_prim) as usize;
-        let choice = self.table.probability(emitter);
-        let density = match self.emitters[emitter] {
-            Emitter::Triangle { prim } => {
-                let to = at.position - from;
-                let distance_sq = to.length_squared();
-                let cos = triangle_normal(world, prim).dot(to).abs() / distance_sq.sqrt();
-                distance_sq / (cos * triangle_area(world, prim)).max(1e-30)
-            }
-            Emitter::Sphere { prim } => {
-                let ball = world.primitives.spheres[prim as usize - world.primitives.triangle_count()];
-                match sphere::cone(&ball, from) {
-                    Some(one_minus_cos) => 1.0 / (TAU * one_minus_cos),
-                    None => {
-                        let to = at.position - from;
-                        let distance_sq = to.length_squared();
-                        let cos = at.geometric_normal.dot(to).abs() / distance_sq.sqrt();
-                        distance_sq / (cos * sphere_area(ball.radius)).max(1e-30)
-                    }
-                }
-            }
-            _ => return 0.0,
-        };
-        choice * density
+        let part = self.first_part[emitter] + self.emitters[emitter].part_of(world, at);
+        let (group, share) = self.clusters.find(part as usize);
+        self.probability(place, group) * share * self.emitters[emitter].pdf(world, from, at)
     }
 
-    /// Chooses a light and a point on it as seen from `from`; none where the choice sends nothing there.
-    pub(crate) fn sample(&self, world: &World, from: Vec3, choice: f32, u: [f32; 2]) -> Option<LightSample> {
+    /// Chooses a light and a point on it as seen from `from`, in `place`; none where the choice sends nothing there.
+    pub(crate) fn sample(
+        &self,
+        world: &World,
+        from: Vec3,
+        place: Place,
+        choice: f32,
+        u: [f32; 2],
+    ) -> Option<LightSample> {
         if self.table.is_empty() {
             return None;
         }
-        let (index, probability, rest) = self.table.sample(choice);
+        let (item, probability, rest) = self.choose(place, choice);
         if probability <= 0.0 {
             return None;
         }
-        let sample = match &self.emitters[index] {
-            Emitter::Triangle { prim } => {
-                let [alpha, beta] = uniform_triangle(u);
-                let light = world.triangle_point(*prim, alpha, beta);
-                let to = light.position - from;
-                let distance_sq = to.length_squared();
-                let dir = to / distance_sq.sqrt();
-                let cos = triangle_normal(world, *prim).dot(dir).abs();
-                let pdf = distance_sq / (cos * triangle_area(world, *prim)).max(1e-30);
-                LightSample {
-                    dir,
-                    target: Some(light.ray_origin(-dir)),
-                    radiance: world.emitted(&light, -dir),
-                    pdf: pdf * probability,
-                    delta: false,
-                }
+        let sample = self.sample_item(world, from, item, rest, u)?;
+        Some(LightSample { pdf: sample.pdf * probability, ..sample })
+    }
+
+    /// A point on one item as seen from `from`; the density leaves out the choice of the item. The item must have
+    /// power.
+    pub(crate) fn sample_item(
+        &self,
+        world: &World,
+        from: Vec3,
+        item: usize,
+        choice: f32,
+        u: [f32; 2],
+    ) -> Option<LightSample> {
+        let sample = match self.item(item) {
+            Item::Group(group) => {
+                let (part, share, _) = self.clusters.sample(group, choice);
+                let (emitter, part) = self.parts[part];
+                let sample = self.emitters[emitter as usize].sample(world, part, from, u);
+                LightSample { pdf: sample.pdf * share, ..sample }
             }
-            Emitter::Sphere { prim } => {
-                let ball = world.primitives.spheres[*prim as usize - world.primitives.triangle_count()];
-                let (light, dir, pdf) = match sphere::sample(&ball, from, u) {
-                    Some((dir, at, pdf)) => (world.sphere_point(*prim, at), dir, pdf),
+            Item::Distant(i) => {
+                let Distant { direction, irradiance } = self.distant[i];
+                LightSample { dir: -direction, target: None, radiance: irradiance, pdf: 1.0, delta: true }
+            }
+            Item::Sky(bin) => {
+                let (dir, radiance, pdf) = match &self.pool {
+                    Some(pool) => {
+                        let stocked = pool.get(bin, choice);
+                        (stocked.dir, stocked.radiance, stocked.pdf)
+                    }
                     None => {
-                        let at = ball.center + uniform_sphere(u) * ball.radius;
-                        let light = world.sphere_point(*prim, at);
-                        let to = light.position - from;
-                        let distance_sq = to.length_squared();
-                        let dir = to / distance_sq.sqrt();
-                        let cos = light.geometric_normal.dot(dir).abs();
-                        (light, dir, distance_sq / (cos * sphere_area(ball.radius)).max(1e-30))
+                        let sky = self.sky.as_ref()?;
+                        let (dir, pdf) = sky.sample(bin, choice, u);
+                        (dir, sky.radiance(dir), pdf)
                     }
                 };
-                LightSample {
-                    dir,
-                    target: Some(light.ray_origin(-dir)),
-                    radiance: world.emitted(&light, -dir),
-                    pdf: pdf * probability,
-                    delta: false,
-                }
-            }
-            Emitter::Point { position, intensity } => {
-                let to = *position - from;
-                let distance_sq = to.length_squared();
-                LightSample {
-                    dir: to / distance_sq.sqrt(),
-                    target: Some(*position),
-                    radiance: *intensity / distance_sq,
-                    pdf: probability,
-                    delta: true,
-                }
-            }
-            Emitter::Spot { position, frame, intensity, cutoff, beam, .. } => {
-                let to = *position - from;
-                let distance_sq = to.length_squared();
-                let dir = to / distance_sq.sqrt();
-                let factor = falloff(libm::acosf((-dir).dot(frame.n).clamp(-1.0, 1.0)), *cutoff, *beam);
-                LightSample {
-                    dir,
-                    target: Some(*position),
-                    radiance: *intensity * (factor / distance_sq),
-                    pdf: probability,
-                    delta: true,
-                }
-            }
-            Emitter::Directional { direction, irradiance } => {
-                LightSample { dir: -*direction, target: None, radiance: *irradiance, pdf: probability, delta: true }
-            }
-            Emitter::Environment => {
-                let (environment, _) = self.environment.as_ref()?;
-                let (dir, pdf) = environment.sample(rest, u);
-                LightSample {
-                    dir,
-                    target: None,
-                    radiance: environment.radiance(dir),
-                    pdf: pdf * probability,
-                    delta: false,
-                }
+                LightSample { dir, target: None, radiance, pdf, delta: false }
             }
         };
         let useful = sample.dir.is_finite()
@@ -294,45 +346,21 @@ impl Lights {
     pub(crate) fn emit(&self, world: &World, point: &EmissionPoint) -> Option<PhotonStart> {
         let (place, way) = (point.place(), point.direction());
         let (index, probability, rest) = self.emission.at(point.light())?;
-        let (ray, flux) = match &self.emitters[index] {
-            Emitter::Triangle { prim } => {
-                let [alpha, beta] = uniform_triangle(place);
-                let light = world.triangle_point(*prim, alpha, beta);
-                self.lambertian(world, &light, way, triangle_area(world, *prim))
-            }
-            Emitter::Sphere { prim } => {
-                let ball = world.primitives.spheres[*prim as usize - world.primitives.triangle_count()];
-                let light = world.sphere_point(*prim, ball.center + uniform_sphere(place) * ball.radius);
-                self.lambertian(world, &light, way, sphere_area(ball.radius))
-            }
-            Emitter::Point { position, intensity } => {
-                (Ray::new(*position, uniform_sphere(way)), *intensity * (4.0 * PI))
-            }
-            Emitter::Spot { position, frame, intensity, cutoff, beam, one_minus_cos } => {
-                let local = uniform_cone(way, *one_minus_cos);
-                let factor = falloff(libm::acosf(local.z.clamp(-1.0, 1.0)), *cutoff, *beam);
-                (Ray::new(*position, frame.to_world(local)), *intensity * (factor * TAU * one_minus_cos))
-            }
-            Emitter::Directional { direction, irradiance } => {
-                let (ray, density) = self.start_outside(*direction, place, point.disc());
-                (ray, *irradiance / density)
-            }
-            Emitter::Environment => {
-                let (environment, _) = self.environment.as_ref()?;
-                let (dir, pdf) = environment.sample(rest, way);
-                let (ray, density) = self.start_outside(-dir, place, point.disc());
-                (ray, environment.radiance(dir) / (pdf * density))
-            }
+        let (emitters, distant) = (self.emitters.len(), self.distant.len());
+        let (ray, flux) = if index < emitters {
+            self.emitters[index].start(world, place, way)
+        } else if index < emitters + distant {
+            let Distant { direction, irradiance } = self.distant[index - emitters];
+            let (ray, density) = self.start_outside(direction, place, point.disc());
+            (ray, irradiance / density)
+        } else {
+            let sky = self.sky.as_ref()?;
+            let (dir, pdf) = sky.sample(index - emitters - distant, rest, way);
+            let (ray, density) = self.start_outside(-dir, place, point.disc());
+            (ray, sky.radiance(dir) / (pdf * density))
         };
         let flux = flux / probability;
         (flux.is_finite() && flux.max_element() > 0.0).then_some(PhotonStart { ray, flux })
-    }
-
-    fn lambertian(&self, world: &World, light: &SurfacePoint, u: [f32; 2], area: f32) -> (Ray, Vec3) {
-        let (local, _) = cosine_hemisphere(u);
-        let dir = Frame::from_normal(light.geometric_normal).to_world(local);
-        let radiance = world.emitted(light, light.geometric_normal);
-        (Ray::new(light.ray_origin(dir), dir), radiance * (PI * area))
     }
 
     /// A ray that travels along `dir` from beyond the scene, and the density of its place per area across it.
@@ -376,61 +404,4 @@ fn rings(world: &World, region: VisibleRegion) -> Vec<(f32, f32)> {
     }
     let others = 0.5 / (radii.len() - 1) as f32;
     radii.into_iter().enumerate().map(|(i, r)| (r, if i == 0 { 0.5 } else { others })).collect()
-}
-
-fn area_emitter(world: &World, prim: u32) -> (Emitter, f64) {
-    let triangles = world.primitives.triangle_count();
-    let (emitter, area, radiance) = if (prim as usize) < triangles {
-        // A texture may be dark at any one point: look at several before calling the triangle dark.
-        const SAMPLES: [[f32; 2]; 7] =
-            [[0.33, 0.33], [0.1, 0.1], [0.8, 0.1], [0.1, 0.8], [0.45, 0.1], [0.1, 0.45], [0.45, 0.45]];
-        let total: f64 = SAMPLES
-            .iter()
-            .map(|&[alpha, beta]| {
-                let p = world.triangle_point(prim, alpha, beta);
-                mean(world.emitted(&p, p.geometric_normal))
-            })
-            .sum();
-        let radiance = total / SAMPLES.len() as f64;
-        (Emitter::Triangle { prim }, triangle_area(world, prim), radiance)
-    } else {
-        let ball = world.primitives.spheres[prim as usize - triangles];
-        let p = world.sphere_point(prim, ball.center + Vec3::new(0.36, 0.48, 0.8) * ball.radius);
-        (Emitter::Sphere { prim }, sphere_area(ball.radius), mean(world.emitted(&p, p.geometric_normal)))
-    };
-    // Textured emission that the samples missed must keep some chance, or its light would be lost.
-    let power = f64::from(PI) * f64::from(area) * radiance.max(1e-6);
-    (emitter, if power.is_finite() { power } else { 0.0 })
-}
-
-/// Linear fall of a spot's intensity from the beam's edge to the cutoff.
-fn falloff(angle: f32, cutoff: f32, beam: f32) -> f32 {
-    if angle >= cutoff {
-        0.0
-    } else if angle <= beam {
-        1.0
-    } else {
-        (cutoff - angle) / (cutoff - beam)
-    }
-}
-
-fn triangle_cross(world: &World, prim: u32) -> Vec3 {
-    let [a, b, c] = world.primitives.triangle(prim as usize);
-    (b - a).cross(c - a)
-}
-
-fn triangle_area(world: &World, prim: u32) -> f32 {
-    0.5 * triangle_cross(world, prim).length()
-}
-
-fn triangle_normal(world: &World, prim: u32) -> Vec3 {
-    triangle_cross(world, prim).try_normalize().unwrap_or(Vec3::Z)
-}
-
-fn sphere_area(radius: f32) -> f32 {
-    4.0 * PI * radius * radius
-}
-
-fn mean(color: Vec3) -> f64 {
-    f64::from(color.x + color.y + color.z) / 3.0
 }

@@ -50,14 +50,14 @@ impl SkyView {
         (f64::from(escaped) / f64::from(self.rays.max(1))).max(0.02)
     }
 
-    /// Factor on the chance of directions around `dir`: one tenth of the mean even where nothing is seen, so that what
-    /// the look missed is found all the same.
-    pub fn factor(&self, dir: Vec3) -> f32 {
-        self.factor_of(Self::bin(dir))
+    /// Whether any ray reached a bin of the sky.
+    pub fn reaches(&self, bin: usize) -> bool {
+        self.escapes[bin] > 0
     }
 
-    /// See [`SkyView::factor`].
-    pub fn factor_of(&self, bin: usize) -> f32 {
+    /// Factor on the chance of a bin: one tenth of the mean even where nothing is seen, so that what the look missed is
+    /// found all the same.
+    pub fn factor(&self, bin: usize) -> f32 {
         let mean = self.escapes.iter().sum::<u32>() as f32 / Self::BINS as f32;
         if mean == 0.0 { 1.0 } else { 0.1 + self.escapes[bin] as f32 / mean }
     }
@@ -99,12 +99,12 @@ mod tests {
     #[test]
     fn unseen_directions_keep_a_chance() {
         let mut view = SkyView::new();
-        assert_eq!(view.factor_of(3), 1.0);
+        assert_eq!(view.factor(3), 1.0);
         for _ in 0..100 {
             view.add(SkyView::direction(7, [0.5, 0.5]), true);
             view.add(Vec3::Y, false);
         }
-        assert!(view.factor_of(7) > 100.0 && view.factor_of(8) == 0.1);
+        assert!(view.factor(7) > 100.0 && view.factor(8) == 0.1);
         assert_eq!(view.openness(), 0.5);
     }
 }

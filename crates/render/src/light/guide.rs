@@ -1,0 +1,276 @@
+//! Which lights matter where: a choice of lights by place, learned from shadow rays before the first pass.
+//!
+//! Visible points are grouped by position and normal; for each group and each item of the lights a few shadow rays say
+//! how much light arrives. Items are then chosen in proportion to the root of the mean square of what arrives, which is
+//! least noisy where an item is partly hidden (Rath et al. 2020, "Variance-aware path guiding", section 3). A share
+//! of the choice by power alone is mixed in, so that nothing that shines is ever missed.
+
+use super::alias::AliasTable;
+use super::clusters::widest;
+use super::emitter::mean;
+use super::lights::{Item, Lights};
+use super::sky_view::SkyView;
+use crate::control::{Cancelled, Observer};
+use crate::counters::Counters;
+use crate::pilot::VisiblePoint;
+use crate::trace::Tracer;
+use crate::world::World;
+use photinus_geometry::{Ray, Vec3};
+use photinus_num::{Sampler, StreamKind};
+use rayon::prelude::*;
+
+/// Points of a group, where the budget of rays does not ask for more.
+const LEAF: usize = 16;
+/// Shadow rays to learn from, for each pixel, and bounds of their number.
+const RAYS_PER_PIXEL: usize = 4;
+const BUDGET: [usize; 2] = [100_000, 2_000_000];
+/// Shadow rays for each group and item, and those for parts of the sky that nothing was seen to reach.
+const RAYS: u32 = 4;
+const RAYS_UNSEEN: u32 = 1;
+/// Share of the choice by power alone.
+const BY_POWER: f32 = 0.1;
+/// Shares of a group's own findings, those of the two groups that it was cut from together, and those of four.
+const BLEND: [f32; 3] = [0.6, 0.25, 0.15];
+/// Items that send less than this share of the light that may reach a group are not asked for.
+const FAINT: f32 = 1e-3;
+/// Cosine that is added to every surface's: rough and two-sided ones see light from aslant and behind.
+const ASLANT: f32 = 0.05;
+
+/// The group that a point belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place(u32);
+
+impl Place {
+    /// None: lights are chosen by power.
+    pub const ANY: Self = Self(u32::MAX);
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Node {
+    Split { axis: usize, at: f32, children: [u32; 2] },
+    Leaf(u32),
+}
+
+/// Box of a group's points.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    low: Vec3,
+    high: Vec3,
+}
+
+/// The learned choice.
+#[derive(Clone, Debug)]
+pub(crate) struct LightGuide {
+    nodes: Vec<Node>,
+    extents: Vec<Extent>,
+    /// Over the items, for each group; empty where nothing arrives.
+    tables: Vec<AliasTable>,
+    /// Distance that counts as much as a difference in normals of 1.
+    scale: f32,
+}
+
+impl LightGuide {
+    /// Learns from `points`, at a cost that suits a picture of so many pixels; none where there is no choice, or nothing
+    /// to learn from.
+    pub fn learn(
+        world: &World,
+        lights: &Lights,
+        points: &[VisiblePoint],
+        view: &SkyView,
+        pixels: usize,
+        seed: u64,
+        observer: &dyn Observer,
+    ) -> Result<Option<Self>, Cancelled> {
+        if lights.items() < 2 || points.is_empty() {
+            return Ok(None);
+        }
+        let scale = 0.5 * lights.region().radius;
+        let mut guide = Self { nodes: Vec::new(), extents: Vec::new(), tables: Vec::new(), scale };
+        let mut groups: Vec<Vec<VisiblePoint>> = Vec::new();
+        let budget = (RAYS_PER_PIXEL * pixels).clamp(BUDGET[0], BUDGET[1]);
+        let most_groups = (budget / (lights.items() * RAYS as usize)).max(1);
+        // Cuts in the middle of space leave groups half full.
+        let leaf = LEAF.max(2 * points.len() / most_groups);
+        guide.split(points.to_vec(), leaf, &mut groups);
+        let found: Option<Vec<Vec<f32>>> = groups
+            .par_iter()
+            .enumerate()
+            .map(|(g, group)| (!observer.cancelled()).then(|| arriving(world, lights, group, view, seed, g as u64)))
+            .collect();
+        let found = found.ok_or(Cancelled)?;
+        let shares = guide.shares(found);
+        guide.tables = guide.tables(&shares);
+        Ok(Some(guide))
+    }
+
+    /// Cuts `points` in the middle of their widest axis until groups have at most `leaf`; returns the node.
+    fn split(&mut self, points: Vec<VisiblePoint>, leaf: usize, groups: &mut Vec<Vec<VisiblePoint>>) -> u32 {
+        let index = self.nodes.len() as u32;
+        let scale = self.scale;
+        let (axis, width) = widest(points.iter().map(|p| key(p.position, p.normal, scale)));
+        if points.len() <= leaf || !(width > 1e-4 * scale) {
+            return self.leaf(points, groups);
+        }
+        let value = |p: &VisiblePoint| key(p.position, p.normal, scale)[axis];
+        let (low, high) =
+            points.iter().map(value).fold((f32::INFINITY, f32::NEG_INFINITY), |m, v| (m.0.min(v), m.1.max(v)));
+        let at = 0.5 * (low + high);
+        let (rest, points): (Vec<_>, Vec<_>) = points.into_iter().partition(|p| value(p) > at);
+        if rest.is_empty() || points.is_empty() {
+            return self.leaf([rest, points].concat(), groups);
+        }
+        self.nodes.push(Node::Leaf(0));
+        let children = [self.split(points, leaf, groups), self.split(rest, leaf, groups)];
+        self.nodes[index as usize] = Node::Split { axis, at, children };
+        index
+    }
+
+    fn leaf(&mut self, points: Vec<VisiblePoint>, groups: &mut Vec<Vec<VisiblePoint>>) -> u32 {
+        let low = points.iter().fold(Vec3::INFINITY, |m, p| m.min(p.position));
+        let high = points.iter().fold(Vec3::NEG_INFINITY, |m, p| m.max(p.position));
+        // Between the points that were looked at lie others.
+        let margin = Vec3::splat(0.5 * (high - low).length());
+        self.extents.push(Extent { low: low - margin, high: high + margin });
+        self.nodes.push(Node::Leaf(groups.len() as u32));
+        groups.push(points);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// Findings of each node as shares of the items: a group's own, or the mean of the two below.
+    fn shares(&self, found: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
+        let mut shares: Vec<Vec<f32>> = vec![Vec::new(); self.nodes.len()];
+        let mut found: Vec<Option<Vec<f32>>> = found.into_iter().map(Some).collect();
+        // Children stand behind their parents.
+        for node in (0..self.nodes.len()).rev() {
+            let mut sum = match self.nodes[node] {
+                Node::Leaf(group) => found[group as usize].take().unwrap_or_default(),
+                Node::Split { children: [low, high], .. } => {
+                    shares[low as usize].iter().zip(&shares[high as usize]).map(|(a, b)| a + b).collect()
+                }
+            };
+            let total: f32 = sum.iter().sum();
+            if total > 0.0 {
+                sum.iter_mut().for_each(|s| *s /= total);
+            }
+            shares[node] = sum;
+        }
+        shares
+    }
+
+    /// The table of each group, from the shares of its node and of the two above.
+    fn tables(&self, shares: &[Vec<f32>]) -> Vec<AliasTable> {
+        let mut tables = vec![AliasTable::default(); self.extents.len()];
+        let mut open = vec![(0u32, 0u32, 0u32)];
+        while let Some((node, parent, grandparent)) = open.pop() {
+            match self.nodes[node as usize] {
+                Node::Split { children, .. } => open.extend(children.map(|child| (child, node, parent))),
+                Node::Leaf(group) => {
+                    let mut weights = vec![0.0f64; shares[0].len()];
+                    for (from, part) in [node, parent, grandparent].into_iter().zip(BLEND) {
+                        for (weight, &share) in weights.iter_mut().zip(&shares[from as usize]) {
+                            *weight += f64::from(part * share);
+                        }
+                    }
+                    if weights.iter().any(|&w| w > 0.0) {
+                        tables[group as usize] = AliasTable::new(&weights);
+                    }
+                }
+            }
+        }
+        tables
+    }
+
+    /// The group of a point with its normal; [`Place::ANY`] away from all that was looked at.
+    pub fn place(&self, position: Vec3, normal: Vec3) -> Place {
+        let key = key(position, normal, self.scale);
+        let mut node = 0u32;
+        loop {
+            match self.nodes[node as usize] {
+                Node::Split { axis, at, children } => node = children[usize::from(key[axis] > at)],
+                Node::Leaf(group) => {
+                    let Extent { low, high } = self.extents[group as usize];
+                    let inside = position.cmpge(low).all() && position.cmple(high).all();
+                    let known = inside && !self.tables[group as usize].is_empty();
+                    return if known { Place(group) } else { Place::ANY };
+                }
+            }
+        }
+    }
+
+    /// An item, its probability, and what is left of `u`.
+    pub fn choose(&self, by_power: &AliasTable, place: Place, u: f32) -> (usize, f32, f32) {
+        if place == Place::ANY {
+            return by_power.sample(u);
+        }
+        let (item, _, rest) = if u < BY_POWER {
+            by_power.sample(u / BY_POWER)
+        } else {
+            self.tables[place.0 as usize].sample((u - BY_POWER) / (1.0 - BY_POWER))
+        };
+        (item, self.probability(by_power.probability(item), place, item), rest)
+    }
+
+    /// Probability of an item, given that in the choice by power alone.
+    pub fn probability(&self, by_power: f32, place: Place, item: usize) -> f32 {
+        if place == Place::ANY {
+            return by_power;
+        }
+        BY_POWER * by_power + (1.0 - BY_POWER) * self.tables[place.0 as usize].probability(item)
+    }
+
+    /// Bytes of the tables.
+    pub fn bytes(&self) -> usize {
+        let items: usize = self.tables.iter().map(AliasTable::len).sum();
+        items * 12 + self.nodes.len() * (size_of::<Node>() + size_of::<Extent>() + size_of::<AliasTable>())
+    }
+}
+
+fn key(position: Vec3, normal: Vec3, scale: f32) -> [f32; 6] {
+    let n = normal * scale;
+    [position.x, position.y, position.z, n.x, n.y, n.z]
+}
+
+/// Root of the mean square of what arrives at the points of a group, for each item.
+fn arriving(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyView, seed: u64, index: u64) -> Vec<f32> {
+    let items = lights.items();
+    let (mut rays, mut asked) = (Vec::new(), Vec::new());
+    let mut weight = vec![0.0f32; items];
+    for item in (0..items).filter(|&item| lights.item_probability(item) > 0.0) {
+        let count = match lights.item(item) {
+            Item::Sky(bin) if !view.reaches(bin) => RAYS_UNSEEN,
+            _ => RAYS,
+        };
+        weight[item] = 1.0 / count as f32;
+        let stream = 3 << 40 | index << 20 | item as u64;
+        for i in 0..count {
+            let mut sampler = Sampler::new(seed, StreamKind::Pilot, stream, i);
+            let (u, choice, pick) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
+            let point = &group[((pick * group.len() as f32) as usize).min(group.len() - 1)];
+            let origin = point.position + point.normal * point.lift;
+            let Some(light) = lights.sample_item(world, origin, item, choice, u) else { continue };
+            let cos = point.normal.dot(light.dir).max(0.0) + ASLANT;
+            let value = mean(light.radiance) as f32 * cos / light.pdf;
+            asked.push((item, value));
+            rays.push(match light.target {
+                Some(target) => Ray { origin, t_min: 0.0, dir: target - origin, t_max: 1.0 },
+                None => Ray::new(origin, light.dir),
+            });
+        }
+    }
+    let mut clear = vec![0.0f32; items];
+    asked.iter().for_each(|&(item, value)| clear[item] += value * weight[item]);
+    let least = FAINT * clear.iter().sum::<f32>();
+    let mut slot = 0;
+    rays.retain(|_| {
+        slot += 1;
+        clear[asked[slot - 1].0] >= least
+    });
+    asked.retain(|&(item, _)| clear[item] >= least);
+    let mut visible = Vec::new();
+    Tracer::new(world, false).visibility(&rays, &mut visible, &mut Counters::default());
+    let mut squares = vec![0.0f32; items];
+    for (&(item, value), &share) in asked.iter().zip(&visible) {
+        squares[item] += value * value * share * weight[item];
+    }
+    squares.into_iter().map(|s| if s.is_finite() { s.sqrt() } else { 0.0 }).collect()
+}
