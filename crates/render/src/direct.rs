@@ -4,8 +4,9 @@
 use crate::bsdf::{LobeSet, TransportMode};
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
-use crate::eye_pass::{EyePass, Tile};
+use crate::eye_pass::EyePass;
 use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
+use crate::tile::Tile;
 use crate::trace::Tracer;
 use crate::twin::Queries;
 use photinus_geometry::{Hit, Ray, Vec3};
@@ -29,7 +30,7 @@ struct Node {
 impl EyePass<'_> {
     /// As [`EyePass::run`], by the thesis's recursion.
     pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.run_tiles(film, observer, |x0, y0, w, h, index, tile, counters| {
+        self.tiles().run(film, observer, |x0, y0, w, h, index, tile, counters| {
             self.direct_tile(maps, [x0, y0, w, h], index, tile, counters, observer)
         })
     }

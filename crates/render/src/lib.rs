@@ -23,6 +23,7 @@ mod renderer;
 mod settings;
 mod surface;
 pub mod texture;
+mod tile;
 mod trace;
 mod twin;
 mod world;

@@ -5,6 +5,7 @@ use super::lights::Lights;
 use crate::counters::Counters;
 use crate::pilot::VisiblePoint;
 use crate::trace::Tracer;
+use crate::twin::Twin;
 use crate::world::World;
 use photinus_geometry::Ray;
 use photinus_num::{Sampler, StreamKind};
@@ -41,7 +42,7 @@ pub(crate) fn shadow_rays(world: &World, lights: &Lights, points: &[VisiblePoint
         tried += 1;
     }
     let mut visible = Vec::new();
-    Tracer::new(world, false).visibility(&rays, &mut visible, &mut Counters::default());
+    Tracer::new(world, Twin::OFF).visibility(&rays, &mut visible, &mut Counters::default());
     let mut sums = vec![[0.0f64; 2]; tried];
     for (&(slot, value), &share) in asked.iter().zip(&visible) {
         let arriving = value * f64::from(share);

@@ -14,6 +14,7 @@ use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
 use crate::pilot::VisiblePoint;
 use crate::trace::Tracer;
+use crate::twin::Twin;
 use crate::world::World;
 use photinus_geometry::{Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
@@ -267,7 +268,7 @@ fn arriving(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyVi
     });
     asked.retain(|&(item, _)| clear[item] >= least);
     let mut visible = Vec::new();
-    Tracer::new(world, false).visibility(&rays, &mut visible, &mut Counters::default());
+    Tracer::new(world, Twin::OFF).visibility(&rays, &mut visible, &mut Counters::default());
     let mut squares = vec![0.0f32; items];
     for (&(item, value), &share) in asked.iter().zip(&visible) {
         squares[item] += value * value * share * weight[item];
