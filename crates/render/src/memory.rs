@@ -15,8 +15,11 @@ pub struct RenderMemory {
 }
 
 /// Bytes of a photon while its map is built: itself in order of emission, what it is sorted by, and in the map with its
-/// place there. Measured at 67 to 69 with 0.3 to 3 million photons.
-const PHOTON_BUILD_BYTES: u64 = 70;
+/// place there. Measured at 61 to 69 with 0.3 to 3 million photons.
+const PHOTON_BUILD_BYTES: u64 = 66;
+
+/// Bytes of a photon in a list.
+const PHOTON_LIST_BYTES: u64 = 24;
 
 /// Bytes of a photon in a finished map: itself and its place there.
 const PHOTON_BYTES: u64 = 28;
@@ -36,8 +39,8 @@ pub(crate) struct Ahead {
     pub passes: u32,
     /// The passes are a guess, as time decides.
     pub is_guess: bool,
-    /// Photons stored by a pass.
-    pub stored: u64,
+    /// Photons stored by a pass, in the global map and in the caustic map.
+    pub stored: [u64; 2],
     /// The photons of the first pass serve all.
     pub maps_once: bool,
     /// Bytes of tables.
@@ -47,13 +50,16 @@ pub(crate) struct Ahead {
 impl RenderMemory {
     /// The largest of the three moments that can be the peak.
     pub(crate) fn predict(ahead: &Ahead) -> Self {
-        let &Ahead { values, passes, stored, lights, .. } = ahead;
+        let &Ahead { values, passes, stored: [global, caustic], lights, .. } = ahead;
+        let stored = global + caustic;
         let buffer = values * 4;
         let before = Film::held_before(passes);
         // A guess that is off by one pass may be off by all sums but one: their mean is not.
         let after = if ahead.is_guess { before / 2 + 1 } else { Film::held_after(passes) };
         let at_build = if ahead.maps_once { 0 } else { before };
-        let building = stored * PHOTON_BUILD_BYTES;
+        // One map is built after the other.
+        let building = (global * PHOTON_BUILD_BYTES + caustic * PHOTON_LIST_BYTES)
+            .max(global * PHOTON_BYTES + caustic * PHOTON_BUILD_BYTES);
         let most_left = if ahead.maps_once { 0 } else { LEFT_BYTES * rayon::current_num_threads() as u64 };
         let left = (building / 4).min(most_left);
         let map_build = Self { film: at_build * buffer, photons: building + left, lights };

@@ -52,8 +52,8 @@ pub(crate) struct Radii {
 /// What the pilot photons said.
 pub(crate) struct PhotonOutlook {
     pub radii: Radii,
-    /// Photons stored by a pass.
-    pub stored: u64,
+    /// Photons stored by a pass, in the global map and in the caustic map.
+    pub stored: [u64; 2],
     /// Photons of their own for caustics, where those are seen.
     pub caustics: Option<CausticPlan>,
 }
@@ -192,7 +192,8 @@ pub(crate) fn photon_outlook(
         PhotonPass { kind: StreamKind::Pilot, pass: 0, count, guide: None, together: None, profile_every: 0, ..pass };
     let (mut stored, counters) = pilot.run(world, lights, observer)?;
     let per_pass = |stored: u64| (stored as f64 * f64::from(photons) / f64::from(count.max(1))) as u64;
-    let all = per_pass(counters.photons.stored);
+    let counted = counters.photons;
+    let stored_plain = [per_pass(counted.stored - counted.stored_caustic), per_pass(counted.stored_caustic)];
     let global_search = search(std::mem::take(&mut stored.global));
     let scale = |target: f32| (target / NEIGHBORS as f32 * count as f32 / photons as f32).sqrt();
     let width = median(points.iter().map(|p| p.width)).unwrap_or(0.0);
@@ -201,19 +202,20 @@ pub(crate) fn photon_outlook(
     let global = typical_distance(&positions, global_search.as_deref(), 0.5).map(|r| r * scale(GLOBAL_TARGET));
     let global = global.unwrap_or(fallback).max(width).max(1e-9);
     if pass.keep == Keep::All {
-        return Ok(PhotonOutlook { radii: Radii { global, caustic: global }, stored: all, caustics: None });
+        return Ok(PhotonOutlook { radii: Radii { global, caustic: global }, stored: stored_plain, caustics: None });
     }
     let global_search = global_search.as_deref();
     if let Some(plan) = caustic_plan::plan(world, lights, points, pilot, &stored, global_search, photons, observer)? {
         // Where a caustic is as smooth as the rest it needs no wider radius than that.
         let radii = Radii { global, caustic: plan.radius.min(global) };
         let own = (f64::from(plan.stored) * f64::from(plan.count)) as u64;
-        return Ok(PhotonOutlook { radii, stored: all + own, caustics: Some(plan) });
+        let stored = [stored_plain[0], stored_plain[1] + own];
+        return Ok(PhotonOutlook { radii, stored, caustics: Some(plan) });
     }
     let probes = spread(&stored.caustic);
     let caustic = typical_distance(&probes, search(stored.caustic).as_deref(), 0.5).map(|r| r * scale(CAUSTIC_TARGET));
     let caustic = caustic.unwrap_or(global).clamp((0.7 * width).min(global), global);
-    Ok(PhotonOutlook { radii: Radii { global, caustic }, stored: all, caustics: None })
+    Ok(PhotonOutlook { radii: Radii { global, caustic }, stored: stored_plain, caustics: None })
 }
 
 /// A search over pilot photons; none where they are few.

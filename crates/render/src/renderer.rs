@@ -46,8 +46,8 @@ pub struct Renderer<'w> {
     radii: Radii,
     /// Photons of their own for caustics.
     caustics: Option<CausticPlan>,
-    /// Photons stored by a pass, by the pilot.
-    stored: u64,
+    /// Photons stored by a pass, by the pilot: in the global map and in the caustic map.
+    stored: [u64; 2],
     /// Light covers so much of the view that diffuse surfaces look for it by chance too.
     probe: bool,
     /// Shadow rays of each visible point.
@@ -96,7 +96,7 @@ impl<'w> Renderer<'w> {
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
             caustics: None,
-            stored: 0,
+            stored: [0; 2],
             shared_maps: None,
             film: Film::new(0),
             partial: None,
