@@ -175,7 +175,10 @@ fn measure(
         .collect();
     // Noise counts relative to all light, variance as its square.
     let needed = |p: &Probe| TARGET * p.contrast * p.contrast / p.found;
-    let factor = pilot::median(probes.iter().map(needed))?.clamp(LEAST_FACTOR, MOST_FACTOR);
+    // A caustic that even the most photons leave blurred gets fewer of them the farther it is out of reach: it is wide, so
+    // that a wider radius does it less harm, and other light makes more noise.
+    let wanted = pilot::median(probes.iter().map(needed))?;
+    let factor = if wanted > MOST_FACTOR { MOST_FACTOR * MOST_FACTOR / wanted } else { wanted }.max(LEAST_FACTOR);
     let radius = pilot::median(probes.iter().map(|p| p.pixel * (needed(p) / factor).max(1.0).sqrt()))?;
     let count = ((photons as f32 * factor) as u32).max(1);
     Some(CausticPlan { guide: pass.guide?.clone(), count, radius, stored })
