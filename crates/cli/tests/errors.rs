@@ -101,7 +101,6 @@ fn what_is_not_built_is_refused_and_never_ignored() {
     for (arguments, word) in [
         (&["--denoise"][..], "--denoise"),
         (&["--resume", "x.exr"], "--resume"),
-        (&["--record-queries", "q.bin"], "--record-queries"),
         (&["--hardware", "thesis"], "--hardware"),
         (&["--backend", "lns"], "--backend"),
         (&["--backend", "cycle"], "--backend"),

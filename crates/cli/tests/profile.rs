@@ -89,3 +89,22 @@ fn a_render_ends_with_the_table() {
     let quiet = run_in(folder.path(), &[&["render", "-o", "a.png", "--quiet"], SIZE].concat());
     assert_eq!(stderr(&quiet), "");
 }
+
+#[test]
+fn queries_are_recorded_and_the_picture_is_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = render(folder.path(), "a.exr", &[]);
+    let output = run_in(folder.path(), &[&["render", "-o", "b.exr", "--record-queries", "q.bin"], SIZE].concat());
+    success(&output);
+    let read = |name| std::fs::read(folder.path().join(name)).unwrap();
+    assert!(read("a.exr") == read("b.exr"));
+    let mut file = photinus::profile::queries::QueryFile::open(folder.path().join("q.bin")).unwrap();
+    let mut rays = 0;
+    for i in 0..file.block_count() {
+        rays += file.read(i).unwrap().rays.len();
+    }
+    assert_eq!(plain["rays"]["total"], rays);
+    assert!(stderr(&output).lines().any(|line| line.starts_with("recorded: ")), "{}", stderr(&output));
+    let refused = run_in(folder.path(), &["render", "--record-queries", "none/q.bin"]);
+    assert!(common::refused(&refused, 1).contains("none/q.bin"));
+}

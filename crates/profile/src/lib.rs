@@ -5,6 +5,7 @@
 
 mod counters;
 mod profile;
+pub mod queries;
 mod thread_time;
 mod ticks;
 

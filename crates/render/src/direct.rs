@@ -6,12 +6,13 @@ use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::eye_pass::EyePass;
 use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
+use crate::recording::NOT_YET;
 use crate::tile::Tile;
-use crate::trace::Tracer;
 use crate::twin::Queries;
 use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
+use photinus_profile::queries::RayKind;
 
 /// Levels followed where neither the scene nor the user limits them: 2^8 rays a pixel at the very most.
 pub(crate) const DEFAULT_LEVELS: u32 = 8;
@@ -25,6 +26,14 @@ struct Node {
     number: u64,
     width: f32,
     spread: f32,
+    /// Record of the ray.
+    record: u32,
+}
+
+impl Node {
+    fn kind(&self) -> RayKind {
+        if self.level == 0 { RayKind::Camera } else { RayKind::Specular }
+    }
 }
 
 impl EyePass<'_> {
@@ -46,10 +55,10 @@ impl EyePass<'_> {
         observer: &dyn Observer,
     ) -> u32 {
         let [x0, y0, w, h] = window;
-        let mut tracer = Tracer::new(self.world, self.twin(Queries::EyeRays, index));
+        let mut tracer = self.tracer(index);
         let mut twin = self.twin(Queries::Estimates, index);
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
-        let mut scratch = EstimateScratch::default();
+        let mut scratch = EstimateScratch::for_batch_of(&tracer);
         let mut found: Vec<Estimated> = Vec::new();
         for sample in 0..self.spp {
             if observer.cancelled() {
@@ -66,6 +75,7 @@ impl EyePass<'_> {
                     number: 1,
                     width: p.width,
                     spread: p.spread,
+                    record: NOT_YET,
                 })
                 .collect();
             counters.rays.camera += nodes.len() as u64;
@@ -73,9 +83,11 @@ impl EyePass<'_> {
                 rays.clear();
                 rays.extend(nodes.iter().map(|n| n.ray));
                 let mut draws: Vec<Option<Sampler>> = nodes.iter().map(|_| None).collect();
+                tracer.ask(nodes.iter().map(|n| (n.kind(), n.record)));
                 tracer.closest(&rays, &mut hits, counters, |i| {
                     draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], x0, y0, w, sample)).next_1d()
                 });
+                nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
                 let mut estimates = Vec::new();
                 let mut next = Vec::new();
                 timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
@@ -89,9 +101,11 @@ impl EyePass<'_> {
                 for (e, found) in estimates.iter().zip(&found) {
                     tile.estimated(e.path, found);
                 }
+                scratch.hand_over(&mut tracer);
                 nodes = next;
             }
         }
+        tracer.finish();
         self.spp
     }
 
@@ -131,6 +145,7 @@ impl EyePass<'_> {
                 bsdf,
                 throughput: node.throughput,
                 path: node.pixel,
+                ray: node.record,
             });
         }
         if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {
@@ -150,6 +165,7 @@ impl EyePass<'_> {
                 number: node.number * 2 + child as u64,
                 width,
                 spread: node.spread,
+                record: node.record,
             });
         }
     }

@@ -10,6 +10,7 @@ use crate::film::{Aov, FilmLayout};
 use crate::film_filter::FilterSampler;
 use crate::light::{Lights, Place};
 use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
+use crate::recording::NOT_YET;
 use crate::tile::{Part, Tile, Tiles};
 use crate::trace::{Tracer, shadow_ray};
 use crate::twin::{Queries, Twin};
@@ -17,6 +18,7 @@ use crate::world::World;
 use photinus_geometry::{Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
+use photinus_profile::queries::{BlockKey, RayKind, Stage};
 
 /// Everything an eye pass needs.
 pub(crate) struct EyePass<'a> {
@@ -67,9 +69,19 @@ pub(crate) struct Path {
     eta_sq: f32,
     /// Sees lights only, then ends.
     probe: bool,
+    /// Record of the latest ray.
+    record: u32,
 }
 
 impl Path {
+    fn kind(&self) -> RayKind {
+        match (self.probe, self.depth) {
+            (true, _) => RayKind::Gather,
+            (false, 0) => RayKind::Camera,
+            (false, _) => RayKind::Specular,
+        }
+    }
+
     fn part(&self) -> Part {
         match (self.probe, self.diffuse, self.mirrors) {
             (true, ..) => Part::Direct,
@@ -83,6 +95,8 @@ impl Path {
 
 struct Shadow {
     ray: Ray,
+    /// Record of the ray that led here.
+    record: u32,
     pixel: u32,
     diffuse: (Vec3, Part),
     glossy: (Vec3, Part),
@@ -93,7 +107,7 @@ impl EyePass<'_> {
     /// the pass. Where it is stopped, tiles that have any sample are there, as means over those.
     pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
         self.tiles().run(film, observer, |x0, y0, w, h, index, tile, counters| {
-            let mut tracer = Tracer::new(self.world, self.twin(Queries::EyeRays, index));
+            let mut tracer = self.tracer(index);
             let mut twin = self.twin(Queries::Estimates, index);
             for sample in 0..self.spp {
                 if observer.cancelled() {
@@ -102,8 +116,9 @@ impl EyePass<'_> {
                 let paths = self.camera_paths(x0, y0, w, h, sample, tile);
                 counters.rays.camera += paths.len() as u64;
                 let estimates = self.follow(paths, tile, &mut tracer, counters);
-                self.gather(&estimates, &mut twin, tile, counters);
+                self.gather(&estimates, &mut twin, tile, &mut tracer, counters);
             }
+            tracer.finish();
             self.spp
         })
     }
@@ -111,6 +126,12 @@ impl EyePass<'_> {
     /// The tiles of the pass.
     pub(crate) fn tiles(&self) -> Tiles<'_> {
         Tiles { layout: self.layout, window: self.crop, samples: self.spp }
+    }
+
+    /// The tracer of a tile.
+    pub(crate) fn tracer(&self, tile: u32) -> Tracer<'_> {
+        let key = BlockKey { pass: self.pass, stage: Stage::EyePass, index: tile };
+        Tracer::new(self.world, self.twin(Queries::EyeRays, tile)).record(key)
     }
 
     /// Which queries of a tile are counted.
@@ -144,6 +165,7 @@ impl EyePass<'_> {
                 mirrors: 0,
                 eta_sq: 1.0,
                 probe: false,
+                record: NOT_YET,
             });
         }
         paths
@@ -163,7 +185,9 @@ impl EyePass<'_> {
         while !paths.is_empty() {
             rays.clear();
             rays.extend(paths.iter().map(|p| p.ray));
+            tracer.ask(paths.iter().map(|p| (p.kind(), p.record)));
             tracer.closest(&rays, &mut hits, counters, |i| paths[i].sampler.next_1d());
+            paths.iter_mut().enumerate().for_each(|(i, path)| path.record = tracer.record_of(i));
             let mut next = Vec::with_capacity(paths.len());
             shadows.clear();
             timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
@@ -180,6 +204,7 @@ impl EyePass<'_> {
             shadow_rays.clear();
             shadow_rays.extend(shadows.iter().map(|s: &Shadow| s.ray));
             counters.rays.shadow += shadow_rays.len() as u64;
+            tracer.ask(shadows.iter().map(|s| (RayKind::Shadow, s.record)));
             tracer.visibility(&shadow_rays, &mut visible, counters);
             for (shadow, &share) in shadows.iter().zip(&visible) {
                 if share > 0.0 {
@@ -317,6 +342,7 @@ impl EyePass<'_> {
         if diffuse.0.max_element() > 0.0 || glossy.0.max_element() > 0.0 {
             shadows.push(Shadow {
                 ray: shadow_ray(point, light.dir, light.target),
+                record: path.record,
                 pixel: path.pixel,
                 diffuse,
                 glossy,
@@ -345,6 +371,7 @@ impl EyePass<'_> {
             bsdf: *bsdf,
             throughput: path.throughput,
             path: path.pixel,
+            ray: path.record,
         });
         if !self.probe {
             return;
@@ -426,9 +453,16 @@ impl EyePass<'_> {
     }
 
     /// Answers the estimates of a batch from the maps.
-    fn gather(&self, estimates: &[Estimate], twin: &mut Twin, tile: &mut Tile, counters: &mut Counters) {
+    fn gather(
+        &self,
+        estimates: &[Estimate],
+        twin: &mut Twin,
+        tile: &mut Tile,
+        tracer: &mut Tracer,
+        counters: &mut Counters,
+    ) {
         let Some(maps) = self.maps else { return };
-        let mut scratch = EstimateScratch::default();
+        let mut scratch = EstimateScratch::for_batch_of(tracer);
         let mut out: Vec<Estimated> = Vec::new();
         maps.global.estimate(estimates, maps.knn, twin, &mut scratch, &mut out, counters);
         for (e, found) in estimates.iter().zip(&out) {
@@ -442,6 +476,7 @@ impl EyePass<'_> {
                 tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
             }
         }
+        scratch.hand_over(tracer);
     }
 }
 

@@ -19,6 +19,7 @@ mod maps;
 mod memory;
 mod photon_pass;
 mod pilot;
+mod recording;
 mod renderer;
 mod settings;
 mod surface;

@@ -2,13 +2,17 @@
 
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::counters::{Counters, timed};
+use crate::recording::{search_record, sum};
+use crate::trace::Tracer;
 use crate::twin::Twin;
 use photinus_geometry::Vec3;
 use photinus_photons::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search};
+use photinus_profile::queries::{MapKind, SearchAnswer, SearchRecord};
 use photinus_profile::{SearchCounters, ticks, undisturbed};
 
 /// One photon map with its gather radius.
 pub(crate) struct Map {
+    pub kind: MapKind,
     pub search: Box<dyn Search>,
     /// Gather radius of this pass, scene units.
     pub radius: f32,
@@ -31,6 +35,8 @@ pub(crate) struct Estimate {
     pub throughput: Vec3,
     /// The path it belongs to.
     pub path: u32,
+    /// Record of the ray that asks.
+    pub ray: u32,
 }
 
 /// What an estimate found: reflected radiance times throughput, and photons per area.
@@ -43,11 +49,27 @@ pub(crate) struct Estimated {
 /// Buffers of a batch of estimates.
 #[derive(Default)]
 pub(crate) struct EstimateScratch {
+    /// Searches, where they are recorded.
+    records: Option<Vec<SearchRecord>>,
     queries: Vec<GatherQuery>,
     slots: Vec<usize>,
     gathered: Vec<Gathered>,
     neighbors: Vec<Neighbor>,
     visited: Vec<(Photon, f32)>,
+}
+
+impl EstimateScratch {
+    /// Buffers that keep the searches where those of `tracer`'s batch are recorded.
+    pub fn for_batch_of(tracer: &Tracer) -> Self {
+        Self { records: tracer.records().then(Vec::new), ..Self::default() }
+    }
+
+    /// Hands the searches over to the record of the batch.
+    pub fn hand_over(&mut self, tracer: &mut Tracer) {
+        if let Some(records) = &mut self.records {
+            tracer.record_searches(records);
+        }
+    }
 }
 
 impl Map {
@@ -103,11 +125,22 @@ impl Map {
             let constant = e.bsdf.constant(LobeSet::GATHER);
             if let Some(k) = knn {
                 out[i] = self.nearest::<COUNT>(e, &query, k as usize, &mut scratch.neighbors, counters);
+                if let Some(records) = &mut scratch.records {
+                    let farthest_sq = scratch.neighbors.last().map_or(0.0, |n| n.distance_sq);
+                    let answer = SearchAnswer::Nearest { k, farthest_sq };
+                    let found = scratch.neighbors.len() as u32;
+                    records.push(search_record(self.kind, self.kernel, e.ray, &query, found, answer));
+                }
             } else if constant.is_some() {
                 scratch.queries.push(query);
                 scratch.slots.push(i);
             } else {
+                let before = counters.photons_found;
                 out[i] = self.each::<COUNT>(e, &query, &mut scratch.visited, counters);
+                if let Some(records) = &mut scratch.records {
+                    let found = (counters.photons_found - before) as u32;
+                    records.push(search_record(self.kind, self.kernel, e.ray, &query, found, SearchAnswer::Visited));
+                }
             }
         }
         scratch.gathered.clear();
@@ -121,6 +154,9 @@ impl Map {
         for ((&i, query), found) in scratch.slots.iter().zip(&scratch.queries).zip(&scratch.gathered) {
             let e = &estimates[i];
             counters.photons_found += u64::from(found.count);
+            if let Some(records) = &mut scratch.records {
+                records.push(search_record(self.kind, self.kernel, e.ray, query, found.count, sum(found.flux)));
+            }
             if let Some(factor) = e.bsdf.constant(LobeSet::GATHER) {
                 let irradiance = found.flux / self.kernel.area(query.radius);
                 let disc = std::f32::consts::PI * query.radius * query.radius;

@@ -6,12 +6,14 @@ use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::light::{EmissionGuide, EmissionPoint, Lights, VisibleRegion};
+use crate::recording::NOT_YET;
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
 use crate::world::World;
 use photinus_geometry::{Frame, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::Photon;
+use photinus_profile::queries::{BlockKey, RayKind, Stage};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -91,6 +93,8 @@ struct Walk {
     /// Every bounce so far was mirror-like.
     specular_only: bool,
     sampler: Sampler,
+    /// Record of the latest ray.
+    record: u32,
 }
 
 impl PhotonPass<'_> {
@@ -152,6 +156,10 @@ impl PhotonPass<'_> {
         let mut stored = StoredPhotons::default();
         let mut counters = Counters::default();
         let mut tracer = Tracer::new(world, Twin::new(self.profile_every, Queries::PhotonRays, self.pass, chunk));
+        if self.kind != StreamKind::Pilot {
+            let further = if self.kind == StreamKind::Photon { 0 } else { 1 << 31 };
+            tracer = tracer.record(BlockKey { pass: self.pass, stage: Stage::PhotonPass, index: chunk + further });
+        }
         let first = chunk * CHUNK;
         let mut walks = Vec::with_capacity(CHUNK as usize);
         for index in first..(first + CHUNK).min(self.count) {
@@ -160,7 +168,7 @@ impl PhotonPass<'_> {
             if let Some(start) = lights.emit(world, &point) {
                 let flux = start.flux / (density * self.count as f32);
                 add(&mut counters.photons.power.emitted, flux);
-                walks.push(Walk { index, density, ray: start.ray, flux, depth: 0, specular_only: true, sampler });
+                walks.push(Walk { index, density, ray: start.ray, flux, depth: 0, specular_only: true, sampler, record: NOT_YET });
             }
         }
         counters.rays.emitted += walks.len() as u64;
@@ -169,11 +177,13 @@ impl PhotonPass<'_> {
             rays.clear();
             rays.extend(walks.iter().map(|w| w.ray));
             counters.rays.photon += rays.len() as u64;
+            tracer.ask(walks.iter().map(|w| (RayKind::Photon, w.record)));
             tracer.closest(&rays, &mut hits, &mut counters, |i| walks[i].sampler.next_1d());
             let mut slot = 0;
             let mut surfaces = 0;
             let mut land = |walk: &mut Walk| {
                 let hit = hits[slot];
+                walk.record = tracer.record_of(slot);
                 slot += 1;
                 if !hit.is_hit() {
                     counters.photons.escaped += 1;
@@ -186,6 +196,7 @@ impl PhotonPass<'_> {
             timed(self.profile_every > 0, &mut surfaces, || walks.retain_mut(&mut land));
             counters.spent.surfaces += surfaces;
         }
+        tracer.finish();
         (stored, counters)
     }
 

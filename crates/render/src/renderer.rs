@@ -16,7 +16,8 @@ use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
 use crate::world::World;
 use photinus_num::StreamKind;
-use photinus_photons::{BuildOptions, Kernel, PhotonError};
+use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError};
+use photinus_profile::queries::{Block, BlockKey, MapKind, Stage};
 
 /// Shrinking of the radius, Knaus and Zwicker 2011, section 5: the area falls by (i + ALPHA) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
@@ -277,13 +278,18 @@ impl<'w> Renderer<'w> {
         observer.begin(Phase::MapBuild, pass);
         let kernel = if self.settings.mode == Mode::Progressive { Kernel::Epanechnikov } else { Kernel::Constant };
         let name = &self.settings.search;
-        let map = |photons, radius| -> Result<Map, PhotonError> {
+        let map = |kind: MapKind, photons: Vec<Photon>, radius| -> Result<Map, PhotonError> {
+            if let Some(recorder) = &self.world.recorder {
+                let key = BlockKey { pass, stage: Stage::Map, index: kind as u32 };
+                let photons = photons.iter().map(Photon::to_words).collect();
+                recorder.record(&Block { photons, ..Block::new(key) });
+            }
             let options = BuildOptions { radius_hint: radius };
-            Ok(Map { search: photinus_photons::build(name, photons, &options)?, radius, kernel })
+            Ok(Map { kind, search: photinus_photons::build(name, photons, &options)?, radius, kernel })
         };
         Ok(Maps {
-            global: map(global, radii.global)?,
-            caustic: if caustic.is_empty() { None } else { Some(map(caustic, radii.caustic)?) },
+            global: map(MapKind::Global, global, radii.global)?,
+            caustic: if caustic.is_empty() { None } else { Some(map(MapKind::Caustic, caustic, radii.caustic)?) },
             knn: self.settings.knn,
         })
     }

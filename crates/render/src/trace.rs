@@ -2,10 +2,12 @@
 
 use crate::SurfacePoint;
 use crate::counters::{Counters, timed};
+use crate::recording::{NOT_YET, Recording};
 use crate::twin::Twin;
 use crate::world::World;
 use photinus_accel::RayCounters;
 use photinus_geometry::{Hit, Ray, Vec3};
+use photinus_profile::queries::{BlockKey, RayKind, SearchRecord};
 use photinus_profile::undisturbed;
 
 /// Most holes that one ray passes: stacks of leaves are shallow, broken scenes are not.
@@ -15,6 +17,7 @@ const MAX_HOLES: u32 = 1024;
 pub(crate) struct Tracer<'w> {
     world: &'w World,
     twin: Twin,
+    recording: Option<Recording<'w>>,
     rays: Vec<Ray>,
     hits: Vec<Hit>,
     blocked: Vec<bool>,
@@ -23,7 +26,52 @@ pub(crate) struct Tracer<'w> {
 
 impl<'w> Tracer<'w> {
     pub fn new(world: &'w World, twin: Twin) -> Self {
-        Self { world, twin, rays: Vec::new(), hits: Vec::new(), blocked: Vec::new(), pending: Vec::new() }
+        Self {
+            world,
+            twin,
+            recording: None,
+            rays: Vec::new(),
+            hits: Vec::new(),
+            blocked: Vec::new(),
+            pending: Vec::new(),
+        }
+    }
+
+    /// Records the queries from now on under `key`, where the world is recorded.
+    pub fn record(mut self, key: BlockKey) -> Self {
+        self.recording = self.world.recorder.as_deref().map(|sink| Recording::new(sink, key));
+        self
+    }
+
+    /// Says for each ray of the next query what it is for, and the record of the ray that led to it.
+    pub fn ask(&mut self, askers: impl Iterator<Item = (RayKind, u32)>) {
+        if let Some(recording) = &mut self.recording {
+            recording.ask(askers);
+        }
+    }
+
+    /// The record of ray `i` of the latest query, once it has been answered.
+    pub fn record_of(&self, i: usize) -> u32 {
+        self.recording.as_ref().map_or(NOT_YET, |recording| recording.latest(i))
+    }
+
+    /// Whether queries are recorded.
+    pub fn records(&self) -> bool {
+        self.recording.is_some()
+    }
+
+    /// Records searches of these paths.
+    pub fn record_searches(&mut self, searches: &mut Vec<SearchRecord>) {
+        if let Some(recording) = &mut self.recording {
+            recording.searches(searches);
+        }
+    }
+
+    /// Hands over what was recorded.
+    pub fn finish(self) {
+        if let Some(recording) = self.recording {
+            recording.finish();
+        }
     }
 
     fn closest_batch(&mut self, counters: &mut Counters) {
@@ -40,6 +88,9 @@ impl<'w> Tracer<'w> {
                 }
             }
         });
+        if let Some(recording) = &mut self.recording {
+            recording.closest(&self.rays, &self.hits, self.pending.iter().copied());
+        }
     }
 
     fn any_batch(&mut self, rays: &[Ray], counters: &mut Counters) {
@@ -56,6 +107,9 @@ impl<'w> Tracer<'w> {
                 }
             }
         });
+        if let Some(recording) = &mut self.recording {
+            recording.any(rays, &self.blocked);
+        }
     }
 
     /// The nearest hit of each ray on a surface that stops it. `draw(i)` gives a random number of ray `i`, asked for
@@ -69,14 +123,14 @@ impl<'w> Tracer<'w> {
     ) {
         self.rays.clear();
         self.rays.extend_from_slice(rays);
+        self.pending.clear();
+        self.pending.extend(0..rays.len());
         self.closest_batch(counters);
         hits.clear();
         hits.extend_from_slice(&self.hits);
         if !self.world.passes_light {
             return;
         }
-        self.pending.clear();
-        self.pending.extend(0..rays.len());
         for _ in 0..MAX_HOLES {
             let (mut next, mut retry) = (Vec::new(), Vec::new());
             for (slot, &i) in self.pending.iter().enumerate() {

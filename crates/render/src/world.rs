@@ -6,6 +6,7 @@ use crate::bsdf::{Materials, SurfaceModel};
 use crate::footprint::uv_scale;
 use photinus_accel::Structure;
 use photinus_geometry::{Aabb, Frame, Hit, Primitives, Ray, Vec2, Vec3};
+use photinus_profile::queries::QuerySink;
 use photinus_scene::{
     Camera, ColorInput, FilmSettings, Geometry, IntegratorHint, Light, MaterialId, NamedMaterial, Scene, Shape,
 };
@@ -54,6 +55,8 @@ pub struct World {
     pub(crate) lights: Vec<Light>,
     pub(crate) primitives: Arc<Primitives>,
     pub(crate) structure: Box<dyn Structure>,
+    /// Takes the queries of renders, where they are recorded.
+    pub(crate) recorder: Option<Arc<dyn QuerySink>>,
     pub(crate) materials: Materials,
     pub(crate) bounds: Aabb,
     pub(crate) passes_light: bool,
@@ -148,6 +151,7 @@ impl Compiled {
             materials: Materials::new(&self.scene, model),
             primitives: self.primitives,
             structure,
+            recorder: None,
             shapes: self.shapes,
             runs: self.runs,
             normals: self.normals,
@@ -174,6 +178,41 @@ fn passes_light(materials: &[NamedMaterial], id: MaterialId) -> bool {
 }
 
 impl World {
+    /// Hands every query of renders of this world to `recorder` from now on; those of the look at the scene before the
+    /// first pass are left out.
+    pub fn record_queries(&mut self, recorder: Arc<dyn QuerySink>) {
+        self.recorder = Some(recorder);
+    }
+
+    /// Hash of the geometry in the order of its primitive ids: FNV-1a, 64 bits, over the numbers of triangles and spheres
+    /// and the bits of their vertices, centres and radii. It tells scenes apart; it is no protection against forgery.
+    pub fn geometry_hash(&self) -> u64 {
+        let mut hash = 0xCBF2_9CE4_8422_2325u64;
+        let mut add = |bytes: &[u8]| {
+            for byte in bytes {
+                hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3);
+            }
+        };
+        let (triangles, spheres) = (self.primitives.triangle_count(), &self.primitives.spheres);
+        add(&(triangles as u64).to_le_bytes());
+        add(&(spheres.len() as u64).to_le_bytes());
+        for i in 0..triangles {
+            for vertex in self.primitives.triangle(i) {
+                vertex.to_array().iter().for_each(|x| add(&x.to_le_bytes()));
+            }
+        }
+        for sphere in spheres {
+            sphere.center.to_array().iter().for_each(|x| add(&x.to_le_bytes()));
+            add(&sphere.radius.to_le_bytes());
+        }
+        hash
+    }
+
+    /// What rays are tested against.
+    pub fn primitives(&self) -> &Arc<Primitives> {
+        &self.primitives
+    }
+
     /// Index of the shape that primitive `prim` belongs to.
     pub(crate) fn shape_of(&self, prim: u32) -> usize {
         let run = self.runs.partition_point(|&(first, _)| first <= prim) - 1;

@@ -128,7 +128,7 @@ pub struct RenderArgs {
     /// Go on from a file of an earlier render (not built yet)
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     pub resume: Option<PathBuf>,
-    /// Record every ray and search with its answer (not built yet)
+    /// Record every ray and search with what led to it and its answer, some 60 bytes each, see docs/queries.md
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     pub record_queries: Option<PathBuf>,
 }

@@ -57,6 +57,11 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
         target.save(picture)?;
         stats.add_other("write", photinus::machine::cpu_seconds() - before, &session.options().stop);
     }
+    if let (Some(totals), Some(path)) = (session.finish_recording()?, &args.record_queries) {
+        let [rays, searches] = [totals.rays, totals.searches].map(report::count);
+        let size = report::bytes(totals.bytes);
+        progress.line(&format!("recorded: {rays} rays, {searches} searches, {size}, {}", path.display()));
+    }
     let document = Document { output: picture.is_some().then_some(target.path()), stats: &stats };
     if let Some(path) = &args.stats {
         photinus::write_json(path, &document)?;
@@ -129,12 +134,8 @@ fn summary(document: &Document<'_>) -> String {
 
 /// Options that belong to the contract and are not built yet are refused, never ignored.
 fn refuse_unbuilt(args: &RenderArgs) -> std::result::Result<(), Failure> {
-    let unbuilt = [
-        (args.denoise, "--denoise"),
-        (args.resume.is_some(), "--resume"),
-        (args.record_queries.is_some(), "--record-queries"),
-        (args.hardware.is_some(), "--hardware"),
-    ];
+    let unbuilt =
+        [(args.denoise, "--denoise"), (args.resume.is_some(), "--resume"), (args.hardware.is_some(), "--hardware")];
     if let Some((_, option)) = unbuilt.iter().find(|(given, _)| *given) {
         return Err(Failure::Usage(format!("{option}: not built yet; leave it out")));
     }
@@ -180,6 +181,7 @@ fn options(args: &RenderArgs, begun: Instant) -> std::result::Result<RenderOptio
         crop: args.crop,
         tessellate: args.tessellate,
         threads: args.threads,
+        record_queries: args.record_queries.clone(),
         stop: Stop {
             time_secs: args.time,
             cpu_secs: args.cpu_time,
@@ -209,7 +211,7 @@ impl Target {
             return Err(Failure::Usage("--aov: PNG files hold no layers; write to a file that ends in .exr".into()));
         }
         let target = Self { output, tonemap: names::tonemap(&args.tonemap)?, exposure: args.exposure };
-        for path in [Some(target.path()), args.stats.as_deref()].into_iter().flatten() {
+        for path in [Some(target.path()), args.stats.as_deref(), args.record_queries.as_deref()].into_iter().flatten() {
             photinus::check_writable(path)?;
         }
         Ok(target)

@@ -4,6 +4,7 @@ mod measured;
 mod memory;
 mod options;
 mod picture;
+mod recorder;
 mod session;
 mod stats;
 mod stop;

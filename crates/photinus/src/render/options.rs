@@ -7,6 +7,7 @@ use photinus_geometry::Vec3;
 use photinus_render::bsdf::SurfaceModel;
 use photinus_render::{Mode, Settings};
 use photinus_scene::{FovAxis, Projection, Scene, tessellate};
+use std::path::PathBuf;
 
 /// A view that replaces the scene's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +44,8 @@ pub struct RenderOptions {
     pub tessellate: Option<f32>,
     /// Threads; none: all processors.
     pub threads: Option<usize>,
+    /// Every query is written to this file, with its answer.
+    pub record_queries: Option<PathBuf>,
     /// When to stop.
     pub stop: Stop,
 }
@@ -59,6 +62,7 @@ impl Default for RenderOptions {
             crop: None,
             tessellate: None,
             threads: None,
+            record_queries: None,
             stop: Stop::default(),
         }
     }

@@ -3,6 +3,7 @@
 use super::measured::Measured;
 use super::memory::MemoryPrediction;
 use super::picture::Picture;
+use super::recorder::Recorder;
 use super::stats::{AccelStats, MemoryStats, PhaseStats, PhotonStats, RayStats, Seconds, Stats};
 use super::stop::{Spent, StopReason};
 use super::timeline::Timeline;
@@ -11,9 +12,11 @@ use crate::machine::{Machine, cpu_seconds};
 use crate::{Error, Result};
 use photinus_accel::{BuildOptions, StructureSummary};
 use photinus_geometry::{Hit, Ray};
+use photinus_profile::queries::QueryTotals;
 use photinus_render::{Compiled, Mode, Observer, Phase, RenderError, Renderer, World};
 use photinus_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A scene ready to be rendered.
@@ -25,6 +28,7 @@ pub struct Session {
     triangles: u64,
     build: Seconds,
     notes: Vec<String>,
+    recorder: Option<Arc<Recorder>>,
 }
 
 /// Listens to a render: phases and progress as an [`Observer`], what is planned, and every finished pass.
@@ -94,15 +98,22 @@ impl Session {
             .build()
             .map_err(|e| Error::setting("--threads", format!("they cannot be started: {e}")))?;
         let (begun, cpu) = (Instant::now(), cpu_seconds());
-        let (world, structure) = pool.install(|| -> Result<(World, StructureSummary)> {
+        let (mut world, structure) = pool.install(|| -> Result<(World, StructureSummary)> {
             let compiled = Compiled::new(scene);
             let build = BuildOptions { method: options.intersect.clone(), ..BuildOptions::default() };
             let structure = photinus_accel::build(&options.accel, compiled.primitives().clone(), &build)?;
             let summary = structure.summary();
             Ok((compiled.with_structure(structure, options.surface_model), summary))
         })?;
+        let recorder = match &options.record_queries {
+            Some(path) => Some(Arc::new(Recorder::new(path, &world)?)),
+            None => None,
+        };
+        if let Some(recorder) = recorder.clone() {
+            world.record_queries(recorder);
+        }
         let build = Seconds { wall_secs: begun.elapsed().as_secs_f64(), cpu_secs: cpu_seconds() - cpu };
-        Ok(Self { world, options, pool, structure, triangles, build, notes })
+        Ok(Self { world, options, pool, structure, triangles, build, notes, recorder })
     }
 
     /// The structure that was built.
@@ -156,6 +167,15 @@ impl Session {
     /// [`Error::Render`] where the photons cannot be searched.
     pub fn render(&self, watcher: &dyn Watcher) -> Result<Rendered> {
         self.pool.install(|| self.run(watcher))
+    }
+
+    /// Ends the file of [`RenderOptions::record_queries`] and puts it in place: it holds the queries of all renders so
+    /// far. None where nothing is recorded, or the file has been ended.
+    ///
+    /// # Errors
+    /// [`Error::Write`] with the first trouble that there was in writing it.
+    pub fn finish_recording(&self) -> Result<Option<QueryTotals>> {
+        self.recorder.as_ref().map_or(Ok(None), |recorder| recorder.finish())
     }
 
     fn run(&self, watcher: &dyn Watcher) -> Result<Rendered> {
