@@ -96,8 +96,11 @@ pub struct Profile {
     pub accel: AccelProfile,
     /// Photon search.
     pub search: SearchProfile,
-    /// Photons.
+    /// Photons, all but those sent out for caustics alone.
     pub photons: PhotonProfile,
+    /// Photons sent out for caustics alone.
+    #[serde(default)]
+    pub caustic_photons: PhotonProfile,
     /// Thread seconds of everything else, by function.
     pub other: BTreeMap<String, f64>,
 }
@@ -123,6 +126,11 @@ impl Row {
 }
 
 impl Profile {
+    /// Photons stored, whatever they were sent out for.
+    pub fn photons_stored(&self) -> u64 {
+        self.photons.stored.saturating_add(self.caustic_photons.stored)
+    }
+
     /// Seconds of what is neither test, traversal nor search: all processor time less those.
     pub fn other_seconds(&self) -> f64 {
         (self.seconds.cpu_secs - self.intersect.seconds - self.accel.seconds - self.search.seconds).max(0.0)

@@ -168,7 +168,16 @@ impl PhotonPass<'_> {
             if let Some(start) = lights.emit(world, &point) {
                 let flux = start.flux / (density * self.count as f32);
                 add(&mut counters.photons.power.emitted, flux);
-                walks.push(Walk { index, density, ray: start.ray, flux, depth: 0, specular_only: true, sampler, record: NOT_YET });
+                walks.push(Walk {
+                    index,
+                    density,
+                    ray: start.ray,
+                    flux,
+                    depth: 0,
+                    specular_only: true,
+                    sampler,
+                    record: NOT_YET,
+                });
             }
         }
         counters.rays.emitted += walks.len() as u64;

@@ -117,7 +117,7 @@ fn profile_table(stats: &Stats) -> Vec<String> {
             "a search: {:.1} photons found of {:.1} tested; {} stored",
             search.photons_found_mean,
             search.tests_per_search,
-            report::count(profile.photons.stored)
+            report::count(profile.photons_stored())
         ));
     }
     lines

@@ -155,6 +155,7 @@ impl Stats {
 
     /// The profile: what the thesis measured, and what hardware is projected from.
     pub fn profile(&self) -> Profile {
+        let photons = |stats: &PhotonStats| PhotonProfile { emitted: stats.emitted, stored: stats.stored };
         Profile {
             scene: self.scene.clone(),
             triangles: self.triangles,
@@ -163,7 +164,8 @@ impl Stats {
             intersect: self.intersect,
             accel: self.accel.profile,
             search: self.search.clone(),
-            photons: PhotonProfile { emitted: self.photons.emitted, stored: self.photons.stored },
+            photons: photons(&self.photons),
+            caustic_photons: photons(&self.caustic_photons),
             other: self.other.clone(),
         }
     }
