@@ -130,8 +130,6 @@ impl WideBvh {
         if COUNT {
             counters.traversal.rays += rays.len() as u64;
         }
-        // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
-        let begun = if COUNT { ticks() } else { 0 };
         let states = States { slots: [[0; SLOTS]; 4], lens: [0; 4] };
         let nodes = (self.nodes.as_ptr().cast::<u8>(), size_of::<Node>());
         let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
@@ -140,6 +138,9 @@ impl WideBvh {
         let stacks = Stacks::new(self.stack_places, SLOTS.min(rays.len()));
         let slots = [IDLE; SLOTS];
         let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, places, states, set };
+        // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
+        // What is set up once for a batch stands before them: the batches that are counted are shorter than most.
+        let begun = if COUNT { ticks() } else { 0 };
         walk.start();
         while walk.states.lens != [0; 4] {
             walk.visit_nodes::<COUNT>(counters);
