@@ -92,7 +92,7 @@ impl<'w> Renderer<'w> {
             crop,
             max_depth,
             photons,
-            probe: lights.has_environment() || view.light_is_wide(),
+            probe: lights.has_environment() || view.lamps_are_wide(),
             shadow_rays,
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },

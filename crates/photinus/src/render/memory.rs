@@ -63,7 +63,8 @@ impl MemoryPrediction {
         let passes = expected_passes(stop, work);
         let render = renderer.predicted_memory(passes, stop.pass_limit() != Some(passes));
         let threads = rayon::current_num_threads() as u64;
-        let held = world.geometry_bytes() as u64 + structure.bytes + world.texture_bytes() as u64;
+        // The pilot has made the lights' tables.
+        let held = world.geometry_bytes() as u64 + structure.bytes + world.texture_bytes() as u64 + render.lights;
         let now = resident();
         let by_owner = BTreeMap::from([
             (Owner::Geometry, world.geometry_bytes() as u64),

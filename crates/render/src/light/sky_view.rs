@@ -38,10 +38,10 @@ impl SkyView {
         self.lamps += 1;
     }
 
-    /// Whether so much of the view is lit by surfaces or sky that chance finds light about as well as a shadow ray does:
-    /// more than one ray in twenty ends there.
-    pub fn light_is_wide(&self) -> bool {
-        20 * (u64::from(self.lamps) + self.escapes.iter().map(|&e| u64::from(e)).sum::<u64>()) > u64::from(self.rays)
+    /// Whether lamps cover so much of the view that chance finds them about as well as a shadow ray does: more than one ray
+    /// in twenty ends there.
+    pub fn lamps_are_wide(&self) -> bool {
+        20 * u64::from(self.lamps) > u64::from(self.rays)
     }
 
     /// Share of the rays that reached the sky, at least 2 %: a window may be missed by all of them.
