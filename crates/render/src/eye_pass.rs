@@ -44,6 +44,7 @@ pub(crate) struct EyePass<'a> {
     pub shadow_rays: u32,
 }
 
+#[derive(Clone)]
 pub(crate) struct Path {
     pub ray: Ray,
     pub throughput: Vec3,
@@ -288,7 +289,9 @@ impl EyePass<'_> {
     /// Direct light by shadow rays, the choice of lights stratified over them.
     fn light(&self, path: &mut Path, point: &SurfacePoint, bsdf: &Bsdf, shadows: &mut Vec<Shadow>) {
         let (u, choice) = (path.sampler.next_2d(), path.sampler.next_1d());
-        let count = if path.diffuse == 0 { self.shadow_rays } else { 1 };
+        // What is seen weakly, as in a coat, is worth fewer.
+        let worth = self.shadow_rays as f32 * path.throughput.max_element().min(1.0);
+        let count = if path.diffuse == 0 { (worth.ceil() as u32).max(1) } else { 1 };
         path.last_shadows = count as f32;
         for i in 0..count {
             // Steps of the plastic number's powers fill the square evenly (Roberts 2018, the R2 sequence).
@@ -390,12 +393,23 @@ impl EyePass<'_> {
         }
     }
 
-    /// Continues a path: mirror-like lobes only where photons give the rest.
-    fn bounce(&self, mut path: Path, point: &SurfacePoint, bsdf: &Bsdf, next: &mut Vec<Path>) {
+    /// Continues a path: mirror-like lobes only where photons give the rest. Glass and water that the camera sees send both
+    /// a reflected and a refracted ray.
+    fn bounce(&self, path: Path, point: &SurfacePoint, bsdf: &Bsdf, next: &mut Vec<Path>) {
         let set = if self.maps.is_some() { LobeSet::CONTINUE } else { LobeSet::ALL };
-        if !bsdf.has(set) {
-            return;
+        let both = [LobeSet::DELTA_REFLECTION, LobeSet::DELTA_TRANSMISSION];
+        let fork = path.depth == 1
+            && both.into_iter().all(|lobe| bsdf.has(lobe))
+            && !bsdf.has(set & LobeSet::NON_DELTA);
+        if fork {
+            self.bounce_once(path.clone(), both[0], point, bsdf, next);
+            self.bounce_once(path, both[1], point, bsdf, next);
+        } else if bsdf.has(set) {
+            self.bounce_once(path, set, point, bsdf, next);
         }
+    }
+
+    fn bounce_once(&self, mut path: Path, set: LobeSet, point: &SurfacePoint, bsdf: &Bsdf, next: &mut Vec<Path>) {
         let choice = path.sampler.next_1d();
         let chance = path.sampler.next_1d();
         let u = path.sampler.next_2d();
@@ -489,10 +503,11 @@ fn power_heuristic(mine: f32, other: f32) -> f32 {
     1.0 / (1.0 + ratio * ratio)
 }
 
-/// Probability that a bounce of this throughput is followed. Weak reflections, as of a coat over a diffuse base, are
-/// followed in proportion; the eye forgives noise there more than it forgives their absence.
+/// Probability that a bounce of this throughput is followed: always from what the camera sees, as lamps shine in weak
+/// coats too; further on weak reflections are followed in proportion.
 fn survival(depth: u32, throughput: Vec3) -> f32 {
     match depth {
+        0..=1 if throughput.max_element() > 0.0 => 1.0,
         0..=3 => (5.0 * throughput.max_element()).min(1.0),
         _ => throughput.max_element().min(0.95),
     }
