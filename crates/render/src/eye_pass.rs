@@ -398,9 +398,8 @@ impl EyePass<'_> {
     fn bounce(&self, path: Path, point: &SurfacePoint, bsdf: &Bsdf, next: &mut Vec<Path>) {
         let set = if self.maps.is_some() { LobeSet::CONTINUE } else { LobeSet::ALL };
         let both = [LobeSet::DELTA_REFLECTION, LobeSet::DELTA_TRANSMISSION];
-        let fork = path.depth == 1
-            && both.into_iter().all(|lobe| bsdf.has(lobe))
-            && !bsdf.has(set & LobeSet::NON_DELTA);
+        let fork =
+            path.depth == 1 && both.into_iter().all(|lobe| bsdf.has(lobe)) && !bsdf.has(set & LobeSet::NON_DELTA);
         if fork {
             self.bounce_once(path.clone(), both[0], point, bsdf, next);
             self.bounce_once(path, both[1], point, bsdf, next);

@@ -58,7 +58,7 @@ pub fn rubber_plant(stage: &mut Stage, place: Place, height: f32, triangles: usi
         }
     }
     let bark = stage.paint("bark", 0x5A4028, Finish::Matte);
-    let green = stage.paint("rubber-leaf", 0x38602F, Finish::Satin(0.18));
+    let green = stage.paint("rubber-leaf", 0x38602F, Finish::Satin(0.28));
     let left = triangles.saturating_sub(wood.triangle_count());
     stage.mesh("stems", bark, wood.placed(Place::HERE));
     let foliage = leaves(

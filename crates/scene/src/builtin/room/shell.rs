@@ -37,9 +37,8 @@ pub fn build(stage: &mut Stage) {
     stage.mesh("plane", lawn, plane);
 
     let (w, d) = (HALF_WIDTH, HALF_DEPTH);
-    let boards = stage.printed("floor-boards", [72.0, 72.0], Finish::Satin(0.22), || {
-        bitmap::planks(51, hex(0xB58755), hex(0x7D5532))
-    });
+    let boards = stage
+        .printed("floor-boards", [72.0, 72.0], Finish::Satin(0.3), || bitmap::planks(51, hex(0xB58755), hex(0x7D5532)));
     stage.mesh("floor", boards, cuboid([-w, 0.0, -d], [w, FLOOR, d], Faces::NoBottom));
 
     let plaster = stage.diffuse("plaster", linear(0xD9CFBD));
