@@ -72,12 +72,12 @@ impl Stage {
 
     /// Brown wood with its grain along the longer side of boards.
     pub fn oak(&mut self) -> MaterialId {
-        self.printed("oak", [28.0, 70.0], Finish::Satin(0.25), || bitmap::grain(11, hex(0xB98A58), hex(0x7C5330)))
+        self.printed("oak", [28.0, 70.0], Finish::Satin(0.3), || bitmap::grain(11, hex(0xB98A58), hex(0x7C5330)))
     }
 
     /// Dark red-brown wood.
     pub fn walnut(&mut self) -> MaterialId {
-        self.printed("walnut", [24.0, 60.0], Finish::Satin(0.2), || bitmap::grain(12, hex(0x7A5138), hex(0x3E2517)))
+        self.printed("walnut", [24.0, 60.0], Finish::Satin(0.3), || bitmap::grain(12, hex(0x7A5138), hex(0x3E2517)))
     }
 
     /// Brass, lightly brushed (eta and k of Johnson and Christy's copper and zinc alloys, rounded).
