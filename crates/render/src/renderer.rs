@@ -81,9 +81,16 @@ impl<'w> Renderer<'w> {
         let points = pilot::visible_points(world, &camera, crop, settings.seed);
         let view = pilot::sky_view(world, &points, settings.seed);
         let lights = Lights::new(world, pilot::visible_region(world, &points), &view);
-        let guide = LightGuide::learn(world, &lights, &points, &view, pixels, settings.seed, observer)?;
+        // Only shadow rays choose by place, and the thesis's renderer sends none.
+        let guide = match settings.mode {
+            Mode::Direct => None,
+            _ => LightGuide::learn(world, &lights, &points, &view, pixels, settings.seed, observer)?,
+        };
         let lights = lights.guided(guide);
-        let shadow_rays = shadow_rays(world, &lights, &points, settings.seed);
+        let shadow_rays = match settings.mode {
+            Mode::Direct => 0,
+            _ => shadow_rays(world, &lights, &points, settings.seed),
+        };
         let mut renderer = Self {
             world,
             layout,

@@ -52,8 +52,9 @@ impl Clusters {
             let worst = (0..open.len()).max_by(|&a, &b| open[a].2.total_cmp(&open[b].2).then(b.cmp(&a)));
             let Some(slot) = worst.filter(|&slot| open[slot].2 >= 0.0) else { break };
             let (mut group, axis, _) = open.swap_remove(slot);
-            group.sort_by(|&a, &b| key(a)[axis].total_cmp(&key(b)[axis]).then(a.cmp(&b)));
-            let rest = group.split_off(group.len() / 2);
+            let middle = group.len() / 2;
+            group.select_nth_unstable_by(middle, |&a, &b| key(a)[axis].total_cmp(&key(b)[axis]).then(a.cmp(&b)));
+            let rest = group.split_off(middle);
             open.push(measured(group));
             open.push(measured(rest));
         }

@@ -9,8 +9,40 @@ use crate::{SurfacePoint, world::World};
 use photinus_geometry::{Frame, Ray, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Most parts along the edge of a triangle.
-pub(crate) const MOST_CUTS: u32 = 24;
+/// Most parts along the edge of a triangle, and parts of all emitters beyond one each.
+const MOST_CUTS: u32 = 24;
+const MOST_PARTS: u64 = 1 << 16;
+
+/// Cuts triangles into parts no wider than `width`, or than the least power of two times that with which there are not too
+/// many.
+pub(crate) fn cut(world: &World, emitters: &mut [Emitter], mut width: f32) {
+    let cuts = |prim: u32, width: f32| {
+        let [a, b, c] = world.primitives.triangle(prim as usize);
+        let widest = (b - a).length().max((c - b).length()).max((a - c).length());
+        cuts_for(widest, width)
+    };
+    loop {
+        let beyond = |emitter: &Emitter| match emitter {
+            Emitter::Triangle { prim, .. } => u64::from(cuts(*prim, width).pow(2) - 1),
+            _ => 0,
+        };
+        if emitters.iter().map(beyond).sum::<u64>() <= MOST_PARTS {
+            break;
+        }
+        width *= 2.0;
+    }
+    for emitter in emitters {
+        if let Emitter::Triangle { prim, cuts: own } = emitter {
+            *own = cuts(*prim, width);
+        }
+    }
+}
+
+/// Cuts along an edge of length `widest`; 1 where the ratio is no number.
+fn cuts_for(widest: f32, width: f32) -> u32 {
+    let cuts = (widest / width).ceil();
+    if cuts.is_finite() { (cuts as u32).clamp(1, MOST_CUTS) } else { 1 }
+}
 
 /// A primitive that emits, or a light without area.
 #[derive(Clone, Debug)]
@@ -38,15 +70,13 @@ pub(crate) enum Emitter {
 }
 
 impl Emitter {
-    /// The emitter that primitive `prim` is; parts of triangles are no wider than `width` where [`MOST_CUTS`] allows.
-    pub fn of_primitive(world: &World, prim: u32, width: f32) -> Self {
-        if (prim as usize) >= world.primitives.triangle_count() {
-            return Self::Sphere { prim };
+    /// The emitter that primitive `prim` is, in one part.
+    pub fn of_primitive(world: &World, prim: u32) -> Self {
+        if (prim as usize) < world.primitives.triangle_count() {
+            Self::Triangle { prim, cuts: 1 }
+        } else {
+            Self::Sphere { prim }
         }
-        let [a, b, c] = world.primitives.triangle(prim as usize);
-        let widest = (b - a).length().max((c - b).length()).max((a - c).length());
-        let cuts = (widest / width).ceil();
-        Self::Triangle { prim, cuts: if cuts.is_finite() { (cuts as u32).clamp(1, MOST_CUTS) } else { 1 } }
     }
 
     /// Number of parts.
@@ -307,6 +337,16 @@ pub(crate) fn mean(color: Vec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn parts_are_as_narrow_as_asked_for_and_few() {
+        assert_eq!(cuts_for(1.0, 2.0), 1);
+        assert_eq!(cuts_for(1.0, 0.3), 4);
+        assert_eq!(cuts_for(1.0, 1e-9), MOST_CUTS);
+        for (widest, width) in [(0.0, 0.0), (f32::INFINITY, 1.0), (f32::NAN, 1.0), (1.0, 0.0)] {
+            assert_eq!(cuts_for(widest, width), 1);
+        }
+    }
 
     #[test]
     fn parts_hold_their_points_and_fill_the_triangle() {

@@ -275,3 +275,63 @@ fn arriving(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyVi
     }
     squares.into_iter().map(|s| if s.is_finite() { s.sqrt() } else { 0.0 }).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points on a floor and on a wall above its edge, and a guide over three items that differ from group to group.
+    fn guide() -> (LightGuide, Vec<VisiblePoint>) {
+        let points: Vec<VisiblePoint> = (0..800)
+            .map(|i| {
+                let (x, y) = ((i % 20) as f32 * 0.1, (i / 20 % 20) as f32 * 0.1);
+                let (position, normal) =
+                    if i < 400 { (Vec3::new(x, 0.0, y), Vec3::Y) } else { (Vec3::new(x, y, 0.0), Vec3::Z) };
+                VisiblePoint { position, normal, width: 0.01, lift: 1e-4 }
+            })
+            .collect();
+        let mut guide = LightGuide { nodes: Vec::new(), extents: Vec::new(), tables: Vec::new(), scale: 1.0 };
+        let mut groups = Vec::new();
+        guide.split(points.clone(), LEAF, &mut groups);
+        let found = (0..groups.len()).map(|g| vec![g as f32, 1.0, 0.0]).collect();
+        let shares = guide.shares(found);
+        guide.tables = guide.tables(&shares);
+        (guide, points)
+    }
+
+    /// Many points share coordinates with others: none may be looked for on the wrong side of a cut.
+    #[test]
+    fn points_are_found_among_their_like() {
+        let (guide, points) = guide();
+        let mut normals = vec![None; guide.extents.len()];
+        for point in &points {
+            let place = guide.place(point.position, point.normal);
+            assert_ne!(place, Place::ANY, "{point:?}");
+            let normal = normals[place.0 as usize].get_or_insert(point.normal);
+            assert_eq!(*normal, point.normal);
+        }
+        assert!(normals.iter().all(Option::is_some));
+        assert_eq!(guide.place(Vec3::splat(-50.0), Vec3::Y), Place::ANY);
+    }
+
+    #[test]
+    fn items_are_chosen_as_often_as_stated() {
+        let (guide, points) = guide();
+        let by_power = AliasTable::new(&[1.0, 1.0, 2.0]);
+        for place in [guide.place(points[300].position, points[300].normal), Place::ANY] {
+            let n = 100_000;
+            let mut counts = [0u32; 3];
+            for i in 0..n {
+                let (item, probability, rest) = guide.choose(&by_power, place, (i as f32 + 0.5) / n as f32);
+                assert_eq!(probability, guide.probability(by_power.probability(item), place, item));
+                assert!((0.0..1.0).contains(&rest));
+                counts[item] += 1;
+            }
+            for (item, &count) in counts.iter().enumerate() {
+                let stated = guide.probability(by_power.probability(item), place, item);
+                assert!((count as f32 / n as f32 - stated).abs() < 1e-3, "{item}: {count} {stated}");
+                assert!(stated > 0.0);
+            }
+        }
+    }
+}

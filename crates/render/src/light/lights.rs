@@ -3,7 +3,7 @@
 use super::alias::AliasTable;
 use super::clusters::{Clusters, Member};
 use super::emission::{EmissionPoint, LightChoice};
-use super::emitter::{Emitter, mean};
+use super::emitter::{self, Emitter, mean};
 use super::environment::Environment;
 use super::guide::{LightGuide, Place};
 use super::sky_pool::SkyPool;
@@ -47,7 +47,7 @@ pub struct PhotonStart {
     pub flux: Vec3,
 }
 
-/// Widest part of an emitter, over the radius of the visible region.
+/// Widest part of an emitter, over the radius of the visible region, where that does not make too many.
 const PART: f32 = 0.1;
 
 /// Light from one direction.
@@ -101,9 +101,10 @@ impl Lights {
             if shape.emission.is_some() {
                 first_emitter[i] = emitters.len() as u32;
                 let prims = shape.first_prim..shape.first_prim + shape.prim_count;
-                emitters.extend(prims.map(|prim| Emitter::of_primitive(world, prim, PART * region.radius)));
+                emitters.extend(prims.map(|prim| Emitter::of_primitive(world, prim)));
             }
         }
+        emitter::cut(world, &mut emitters, PART * region.radius);
         let (mut distant, mut sky) = (Vec::new(), None);
         for light in &world.lights {
             match light {

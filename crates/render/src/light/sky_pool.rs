@@ -60,3 +60,33 @@ impl SkyPool {
         SkyView::BINS * SLOTS * size_of::<SkySample>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use photinus_geometry::Affine3A;
+    use photinus_scene::{Bitmap, BitmapPixels, EnvironmentLight};
+    use std::sync::Arc;
+
+    #[test]
+    fn stocked_directions_are_those_of_their_bins() {
+        let data = (0..64 * 32).map(|i| [1.0 + (i % 7) as f32, 0.5, 0.2, 1.0]).collect();
+        let bitmap = Arc::new(Bitmap { width: 64, height: 32, pixels: BitmapPixels::RgbaF32(data) });
+        let sky = Environment::new(&EnvironmentLight::Image { bitmap, scale: 1.0, to_world: Affine3A::IDENTITY });
+        let pools = [0, 1].map(|pass| SkyPool::new(&sky, 3, pass));
+        let powers = sky.bin_powers();
+        let (mut strays, mut count) = (0, 0);
+        for bin in (0..SkyView::BINS).filter(|&bin| powers[bin] > 0.0) {
+            for slot in 0..SLOTS {
+                let [stocked, later] = pools.each_ref().map(|pool| pool.get(bin, (slot as f32 + 0.5) / SLOTS as f32));
+                let (found, pdf) = sky.find(stocked.dir);
+                // On the border of two cells rounding may name the other one.
+                strays += usize::from(found != bin || (pdf - stocked.pdf).abs() > 1e-2 * pdf);
+                count += 1;
+                assert_eq!(stocked.radiance, sky.radiance(stocked.dir));
+                assert_ne!(stocked.dir, later.dir);
+            }
+        }
+        assert!(count > 10_000 && strays < count / 1000, "{strays} of {count}");
+    }
+}
