@@ -76,10 +76,27 @@ fn bad_files_are_exit_code_one_with_their_name() {
     assert!(info("scene.pbrt").contains("scene.pbrt: the pbrt format is not supported; supported are Mitsuba XML"));
     assert!(info("scene.blend").contains("a Blender file is not supported"));
     assert!(info("scene.xyzzy").contains("the format .xyzzy is not supported"));
-    assert!(info("missing.xml").contains("missing.xml: cannot read"));
+    assert_eq!(info("missing.xml"), "photinus: missing.xml: there is no such file; check the path");
     assert!(info("folder.xml").contains("not a regular file"));
     let said = refused(&run_in(folder.path(), &["compare", "a.exr", "b.exr"]), 1);
     assert!(said.contains("a.exr"), "{said}");
+}
+
+/// A pipe that nobody writes to blocks whoever opens it.
+#[cfg(target_os = "linux")]
+#[test]
+fn pipes_and_devices_are_refused_before_they_are_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["pipe.xml", "pipe.ply", "pipe"] {
+        let made = std::process::Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap();
+        assert!(made.success());
+        for command in ["info", "render", "tree"] {
+            let said = refused(&run_in(folder.path(), &[command, name]), 1);
+            assert!(said.ends_with("this is a device or pipe, not a regular file; give a file"), "{said}");
+        }
+        let said = refused(&run_in(folder.path(), &["compare", name, name]), 1);
+        assert!(said.contains("this is a device or pipe"), "{said}");
+    }
 }
 
 #[test]

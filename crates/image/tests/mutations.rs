@@ -147,3 +147,17 @@ fn damaged_files_are_errors_or_images() {
     assert!(images > 0 && errors > 0);
     assert!(gave_up.is_empty(), "decoders panicked: {gave_up:?}");
 }
+
+/// The decoder's own message wraps this one and dumps its structures into it.
+#[test]
+fn a_wrong_checksum_is_named_plainly() {
+    let picture = DynamicImage::ImageRgb8(image::RgbImage::new(4, 4));
+    let mut png = Cursor::new(Vec::new());
+    picture.write_to(&mut png, ImageFormat::Png).unwrap();
+    let mut png = png.into_inner();
+    // Signature 8, length and name of the first chunk 8, its content 13, then its checksum.
+    png[8 + 8 + 13] ^= 1;
+    let line = image_from_bytes(&png, "a.png").unwrap_err().to_string();
+    assert!(line.starts_with("a.png: the PNG data are damaged (CRC error: expected "), "{line}");
+    assert!(!line.contains(['{', '\n']) && line.ends_with("; export the image again or use another file"), "{line}");
+}

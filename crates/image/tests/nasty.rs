@@ -38,6 +38,7 @@ fn assert_clear(path: &Path, error: &ImageError) {
     assert!(line.starts_with(&path.display().to_string()), "{line}");
     assert!(!error.what.is_empty() && !error.remedy.is_empty(), "{line}");
     assert!(!line.contains("gave up"), "a decoder panicked: {line}");
+    assert!(!line.contains('{'), "a dump of a structure is no message: {line}");
 }
 
 #[test]

@@ -43,6 +43,6 @@ mod tests {
             "two-spehres: no such file and no built-in scene of that name; did you mean two-spheres?"
         );
         let missing = message("nowhere/scene.xml");
-        assert!(missing.starts_with("nowhere/scene.xml: cannot read"), "{missing}");
+        assert!(missing.starts_with("nowhere/scene.xml: there is no such file"), "{missing}");
     }
 }

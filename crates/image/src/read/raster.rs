@@ -64,11 +64,21 @@ fn codec_error(path: &Path, format: ImageFormat, error: &CodecError) -> ImageErr
             format!("the image is too large ({error})"),
             "use a smaller image",
         ),
-        _ => ImageError::malformed(path, format!("the {name} data are damaged ({})", one_line(&error.to_string()))),
+        _ => ImageError::malformed(path, format!("the {name} data are damaged ({})", reason(error))),
     }
 }
 
-/// The decoder's message without line breaks.
-fn one_line(message: &str) -> String {
-    message.split_whitespace().collect::<Vec<_>>().join(" ")
+/// What the decoder says at the bottom of its chain of errors, in one line and without dumps of its own structures.
+fn reason(error: &CodecError) -> String {
+    let mut deepest: &dyn std::error::Error = error;
+    while let Some(source) = deepest.source() {
+        deepest = source;
+    }
+    let mut message = deepest.to_string();
+    while let (Some(open), Some(close)) = (message.find('{'), message.rfind('}'))
+        && open < close
+    {
+        message.replace_range(open..=close, "");
+    }
+    message.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned()
 }

@@ -1,5 +1,6 @@
 //! What all importers share during one load: settings, the folder rule, warnings, caches and the triangle budget.
 
+use super::error::open_regular;
 use super::{BitmapEncoding, LoadError, LoadOptions, Place};
 use crate::{Bitmap, Warning};
 use std::collections::{HashMap, HashSet};
@@ -129,11 +130,8 @@ impl<'a> Context<'a> {
 /// Reads a whole file of at most `limit` bytes, whatever its length is said to be.
 pub(crate) fn read_limited(place: &Place, path: &Path, limit: u64) -> Result<Vec<u8>, LoadError> {
     let io = |source| LoadError::Io { place: place.clone(), path: path.to_path_buf(), source };
-    let file = std::fs::File::open(path).map_err(io)?;
+    let file = open_regular(place, path)?;
     let meta = file.metadata().map_err(io)?;
-    if !meta.is_file() {
-        return Err(io(std::io::Error::new(std::io::ErrorKind::InvalidInput, "not a regular file")));
-    }
     let too_large = |size| LoadError::TooLarge { place: place.clone(), what: "size in bytes".into(), size, limit };
     if meta.len() > limit {
         return Err(too_large(meta.len()));

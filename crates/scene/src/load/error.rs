@@ -37,7 +37,7 @@ impl std::fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// A file is missing or cannot be read.
-    #[error("{place}: cannot read {}: {source}", path.display())]
+    #[error("{place}: {}", unreadable(place, path, source))]
     Io {
         /// Who asked for the file (the file itself where nobody did).
         place: Place,
@@ -91,4 +91,27 @@ impl LoadError {
     pub fn invalid(place: Place, message: impl Into<String>) -> Self {
         Self::Invalid { place, message: message.into() }
     }
+}
+
+/// What is wrong with a file and what to do; names the file where `place` is another.
+fn unreadable(place: &Place, path: &Path, source: &std::io::Error) -> String {
+    let what = match source.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file; check the path".to_string(),
+        std::io::ErrorKind::PermissionDenied => "permission denied; check the file's rights".to_string(),
+        _ => source.to_string(),
+    };
+    if place.file == path { what } else { format!("cannot read {}: {what}", path.display()) }
+}
+
+/// Opens a file that is neither a folder nor a device or pipe.
+pub(super) fn open_regular(place: &Place, path: &Path) -> Result<std::fs::File, LoadError> {
+    let io = |source| LoadError::Io { place: place.clone(), path: path.to_path_buf(), source };
+    // Asked before opening: opening a pipe that nobody writes to would wait for ever.
+    let metadata = std::fs::metadata(path).map_err(io)?;
+    if !metadata.is_file() {
+        let found = if metadata.is_dir() { "a folder" } else { "a device or pipe" };
+        let what = format!("this is {found}, not a regular file; give a file");
+        return Err(io(std::io::Error::new(std::io::ErrorKind::InvalidInput, what)));
+    }
+    std::fs::File::open(path).map_err(io)
 }

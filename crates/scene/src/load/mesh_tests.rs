@@ -29,7 +29,7 @@ enum Verdict {
 }
 use Verdict::{Loads, Refused, Warns};
 
-/// Every file of `nasty/obj`, `nasty/ply` and `nasty/stl_off` that is a mesh; the table of docs/meshes.md.
+/// Every file of `nasty/obj`, `nasty/ply` and `nasty/stl_off` that is a mesh; see docs/robustness.md.
 const NASTY: &[(&str, Verdict)] = &[
     ("obj/box_UTF16BE.obj", Loads(12)),
     ("obj/box_longline.obj", Loads(12)),

@@ -49,10 +49,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, LoadError> {
 
 fn choose(path: &Path) -> Result<&'static list::Format, LoadError> {
     let io = |source| LoadError::Io { place: Place::file(path), path: path.to_path_buf(), source };
-    let file = std::fs::File::open(path).map_err(io)?;
-    if !file.metadata().map_err(io)?.is_file() {
-        return Err(io(std::io::Error::new(std::io::ErrorKind::InvalidInput, "not a regular file")));
-    }
+    let file = error::open_regular(&Place::file(path), path)?;
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_lowercase();
     let ends = |extension: &str| name.strip_suffix(extension).is_some_and(|stem| stem.ends_with('.'));
     if let Some(format) = list::FORMATS.iter().find(|f| f.extensions.iter().any(|e| ends(e))) {
