@@ -15,8 +15,8 @@ const POINTS: usize = 1024;
 const RAYS: u32 = 8;
 /// Most shadow rays a point.
 const MOST: u32 = 8;
-/// What the rest of a pass costs, in shadow rays a pixel, and its variance over the square of the picture's mean:
-/// pixels' edges and estimates over some sixty photons. From profiles of passes over the built-in scenes.
+/// What the rest of a pass costs, in shadow rays a pixel, and its variance over the square of the picture's mean (pixels'
+/// edges and estimates over some sixty photons). Orders of magnitude, chosen and not fitted: their root is what counts.
 const OTHER_COST: f64 = 8.0;
 const OTHER_VARIANCE: f64 = 0.03;
 
