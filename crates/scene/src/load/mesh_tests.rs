@@ -139,11 +139,11 @@ fn assert_scene_sound(scene: &Scene, what: &str) {
 }
 
 #[test]
-fn the_page_on_meshes_has_every_verdict() {
-    let page = include_str!("../../../../docs/meshes.md");
+fn the_page_on_robustness_has_every_verdict() {
+    let page = include_str!("../../../../docs/robustness.md");
     for (name, verdict) in NASTY {
         let row = page.lines().find(|l| l.starts_with('|') && l.contains(&format!("`{name}`")));
-        let row = row.unwrap_or_else(|| panic!("docs/meshes.md has no row for {name}"));
+        let row = row.unwrap_or_else(|| panic!("docs/robustness.md has no row for {name}"));
         let expected = match verdict {
             Loads(1) | Warns(1, _) => "1 triangle".to_owned(),
             Loads(n) | Warns(n, _) => format!("{n} triangles"),
