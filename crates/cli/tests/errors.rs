@@ -145,3 +145,28 @@ fn a_reader_that_goes_away_is_no_error() {
     let output = child.wait_with_output().unwrap();
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
 }
+
+#[test]
+fn every_command_that_reads_scenes_asks_before_it_reads_outside_their_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    std::fs::write(folder.path().join("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let scene =
+        "<scene version='3.0.0'>\n<shape type='obj'><string name='filename' value='../m.obj'/></shape>\n</scene>\n";
+    std::fs::write(inner.join("scene.xml"), scene).unwrap();
+    let commands: [&[&str]; 3] = [
+        &["info", "scene.xml"],
+        &["tree", "scene.xml"],
+        &["render", "scene.xml", "--size", "8x8", "--photons", "100", "--passes", "1", "--quiet"],
+    ];
+    for command in commands {
+        let said = refused(&run_in(&inner, command), 1);
+        assert_eq!(
+            said,
+            "photinus: scene.xml:2: ../m.obj lies outside the scene's folder; \
+             pass --allow-outside to let this scene read it"
+        );
+        success(&run_in(&inner, &[command, &["--allow-outside"]].concat()));
+    }
+}

@@ -14,6 +14,9 @@ pub struct Context<'a> {
     pub options: &'a LoadOptions,
     /// Pictures read so far, by resolved path and encoding: the same file is held once.
     pub bitmaps: HashMap<(PathBuf, BitmapEncoding), Arc<Bitmap>>,
+    /// The file that the caller named, which may be read wherever it lies.
+    scene_file: PathBuf,
+    /// The folder, without links, in which the scene may read.
     root: PathBuf,
     warnings: Vec<Warning>,
     warned: HashSet<(PathBuf, u32, String)>,
@@ -34,6 +37,7 @@ impl<'a> Context<'a> {
         Self {
             options,
             bitmaps: HashMap::new(),
+            scene_file: scene_file.to_path_buf(),
             root: folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf()),
             warnings: Vec::new(),
             warned: HashSet::new(),
@@ -115,8 +119,9 @@ impl<'a> Context<'a> {
         Ok(bytes)
     }
 
+    /// Whether the scene may read `path`: what counts is where the file really lies, behind `..` and links.
     fn check_inside(&self, place: &Place, path: &Path) -> Result<(), LoadError> {
-        if self.options.allow_outside {
+        if self.options.allow_outside || path == self.scene_file {
             return Ok(());
         }
         match path.canonicalize() {

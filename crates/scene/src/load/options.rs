@@ -3,7 +3,8 @@
 /// Settings of [`load`](super::load).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadOptions {
-    /// Let the scene read files outside the folder of its own file. Off: such a file is an error.
+    /// Let the scene read files outside the folder of its own file. Off: such a file is an error, whether the scene
+    /// leads there by `..`, by an absolute path or by a link. The file given to [`load`](super::load) is read anyway.
     pub allow_outside: bool,
     /// Values for a Mitsuba file's `<default>` names, which win over the file's.
     pub defines: Vec<(String, String)>,

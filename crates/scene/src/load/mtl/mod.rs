@@ -6,6 +6,7 @@ mod textures;
 
 pub(super) use convert::{Converted, convert};
 pub(super) use parse::{RawLibrary, RawMaterial, parse};
+pub(super) use textures::check_permitted;
 
 use std::path::PathBuf;
 

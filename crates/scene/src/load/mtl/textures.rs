@@ -2,8 +2,8 @@
 
 use super::super::bitmap::{BitmapEncoding, grey_pixel, load_bitmap, tinted};
 use super::super::{Context, Draft, LoadError, Place};
-use super::Library;
-use super::parse::MapRef;
+use super::parse::{MapKind, MapRef};
+use super::{Library, RawMaterial};
 use crate::{Bitmap, ColorInput, FloatInput, Texture, TextureFilter, TextureId, TextureKind, WrapMode};
 use photinus_geometry::{Affine3A, Vec3};
 use std::path::PathBuf;
@@ -85,7 +85,7 @@ impl Textures<'_, '_> {
     /// The picture, or none and a warning.
     fn bitmap(&mut self, map: &MapRef, encoding: BitmapEncoding) -> Option<Arc<Bitmap>> {
         let place = Place::new(&self.library.path, map.line);
-        let found = self.find(&place, &map.file);
+        let found = find(&place, &map.file, self.library, self.context);
         match found.and_then(|path| load_bitmap(&place, &path, encoding, self.context)) {
             Ok(bitmap) => Some(bitmap),
             Err(error) => {
@@ -94,26 +94,44 @@ impl Textures<'_, '_> {
             }
         }
     }
+}
 
-    /// The file as named; else without what follows ` #`; else under its bare name, as many files name a folder of the
-    /// machine that wrote them.
-    fn find(&mut self, place: &Place, file: &str) -> Result<PathBuf, LoadError> {
-        let first = self.context.resolve(place, file, &self.library.folders);
-        if first.is_ok() {
-            return first;
+/// Whether all pictures that the material `raw` names may be read; those that cannot be read are no matter here.
+///
+/// # Errors
+/// [`LoadError::Outside`] for the first that lies outside the scene's folder.
+pub(in crate::load) fn check_permitted(
+    raw: &RawMaterial,
+    library: &Library,
+    context: &Context<'_>,
+) -> Result<(), LoadError> {
+    for (_, map) in raw.maps.iter().filter(|(kind, _)| *kind != MapKind::Unused) {
+        let place = Place::new(&library.path, map.line);
+        if let Err(error @ LoadError::Outside { .. }) = find(&place, &map.file, library, context) {
+            return Err(error);
         }
-        let uncommented = file.split(" #").next().unwrap_or(file).trim_end();
-        let bare = uncommented.rsplit(['/', '\\']).next().unwrap_or(uncommented);
-        for name in [uncommented, bare] {
-            if name != file
-                && !name.is_empty()
-                && let Ok(path) = self.context.resolve(place, name, &self.library.folders)
-            {
-                return Ok(path);
+    }
+    Ok(())
+}
+
+/// The file as named; else without what follows ` #`; else under its bare name, as many files name a folder of the
+/// machine that wrote them.
+fn find(place: &Place, file: &str, library: &Library, context: &Context<'_>) -> Result<PathBuf, LoadError> {
+    let first = context.resolve(place, file, &library.folders);
+    if matches!(first, Ok(_) | Err(LoadError::Outside { .. })) {
+        return first;
+    }
+    let uncommented = file.split(" #").next().unwrap_or(file).trim_end();
+    let bare = uncommented.rsplit(['/', '\\']).next().unwrap_or(uncommented);
+    for name in [uncommented, bare] {
+        if name != file && !name.is_empty() {
+            let found = context.resolve(place, name, &library.folders);
+            if matches!(found, Ok(_) | Err(LoadError::Outside { .. })) {
+                return found;
             }
         }
-        first
     }
+    first
 }
 
 /// The error without its place, which the warning has already.
@@ -121,9 +139,6 @@ fn missing_message(statement: &str, error: &LoadError) -> String {
     match error {
         LoadError::Io { path, source, .. } => format!("{statement}: cannot read {}: {source}", path.display()),
         LoadError::Invalid { message, .. } => format!("{statement}: {message}"),
-        LoadError::Outside { path, .. } => {
-            format!("{statement}: {} lies outside the scene's folder: not read (--allow-outside)", path.display())
-        }
         other => format!("{statement}: {other}"),
     }
 }

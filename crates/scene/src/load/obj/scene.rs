@@ -24,12 +24,12 @@ pub fn load(path: &Path, context: &mut Context<'_>) -> Result<Draft, LoadError> 
     if file.parts.iter().all(|p| p.mesh.triangles.is_empty()) {
         return Err(LoadError::invalid(place, "no faces: there is nothing to render; is this an OBJ file?"));
     }
-    let libraries = read_libraries(path, &file.libraries, context);
+    let libraries = read_libraries(path, &file.libraries, context)?;
     let mut materials = Materials { path, libraries, used: HashMap::new(), missing: HashSet::new(), plain: [None; 2] };
     let mut draft = Draft::default();
     for mut part in file.parts {
         context.add_triangles(&place, part.mesh.triangles.len() as u64)?;
-        let Converted { material, emission, is_glass } = materials.of_part(&part, &mut draft, context);
+        let Converted { material, emission, is_glass } = materials.of_part(&part, &mut draft, context)?;
         let turned = face_along_normals(&mut part.mesh);
         if turned > 0 {
             context
@@ -43,7 +43,8 @@ pub fn load(path: &Path, context: &mut Context<'_>) -> Result<Draft, LoadError> 
     Ok(draft)
 }
 
-fn read_libraries(path: &Path, named: &[(u32, PathBuf)], context: &mut Context<'_>) -> Vec<Library> {
+/// The libraries that can be read; one that cannot is a warning, one that may not an error.
+fn read_libraries(path: &Path, named: &[(u32, PathBuf)], context: &mut Context<'_>) -> Result<Vec<Library>, LoadError> {
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     let mut libraries: Vec<Library> = Vec::new();
     for (line, names) in named {
@@ -52,12 +53,10 @@ fn read_libraries(path: &Path, named: &[(u32, PathBuf)], context: &mut Context<'
             let read = found.and_then(|p| Ok((context.read(&place, &p)?, p)));
             let (bytes, library_path) = match read {
                 Ok(read) => read,
+                Err(error @ LoadError::Outside { .. }) => return Err(error),
                 Err(error) => {
                     let reason = match error {
                         LoadError::Io { path, source, .. } => format!("{}: {source}", path.display()),
-                        LoadError::Outside { path, .. } => {
-                            format!("{} lies outside the scene's folder (--allow-outside)", path.display())
-                        }
                         other => other.to_string(),
                     };
                     context.warn(&place, format!("material library not read: {reason}"));
@@ -75,7 +74,7 @@ fn read_libraries(path: &Path, named: &[(u32, PathBuf)], context: &mut Context<'
             libraries.push(Library { path: library_path, folders: vec![own_folder, folder.clone()], raw });
         }
     }
-    libraries
+    Ok(libraries)
 }
 
 /// The files of one `mtllib` statement. Names may hold blanks, with or without a backslash before them, and several
@@ -83,7 +82,7 @@ fn read_libraries(path: &Path, named: &[(u32, PathBuf)], context: &mut Context<'
 fn find_libraries(place: &Place, names: &str, folder: &Path, context: &Context<'_>) -> Vec<Result<PathBuf, LoadError>> {
     let folders = [folder.to_path_buf()];
     let whole = context.resolve(place, names, &folders);
-    if whole.is_ok() {
+    if matches!(whole, Ok(_) | Err(LoadError::Outside { .. })) {
         return vec![whole];
     }
     let mut found = Vec::new();
@@ -116,26 +115,32 @@ struct Materials<'a> {
 }
 
 impl Materials<'_> {
-    fn of_part(&mut self, part: &ObjPart, draft: &mut Draft, context: &mut Context<'_>) -> Converted {
+    fn of_part(
+        &mut self,
+        part: &ObjPart,
+        draft: &mut Draft,
+        context: &mut Context<'_>,
+    ) -> Result<Converted, LoadError> {
         if let Some(name) = &part.material {
             if let Some(&known) = self.used.get(name) {
-                return known;
+                return Ok(known);
             }
             let found = self.libraries.iter().find_map(|library| {
                 let raw = library.raw.materials.iter().find(|m| m.name == *name)?;
                 Some((raw, library))
             });
             if let Some((raw, library)) = found {
+                mtl::check_permitted(raw, library, context)?;
                 let converted = mtl::convert(raw, library, draft, context);
                 self.used.insert(name.clone(), converted);
-                return converted;
+                return Ok(converted);
             }
             if self.missing.insert(name.clone()) {
                 context.warn(&Place::file(self.path), format!("material \"{name}\" is in no library: read as grey"));
             }
         }
         let colored = !part.mesh.colors.is_empty();
-        *self.plain[usize::from(colored)].get_or_insert_with(|| plain_material(draft, colored))
+        Ok(*self.plain[usize::from(colored)].get_or_insert_with(|| plain_material(draft, colored)))
     }
 }
 
