@@ -193,9 +193,9 @@ fn replay(search: &dyn Search, record: &photinus::profile::queries::SearchRecord
             assert_eq!(found, record.found, "{context}: {record:?}");
         }
         SearchAnswer::Nearest { k, farthest_sq } => {
-            search.nearest(query.position, k as usize, query.radius, &mut nearest);
-            assert_eq!(nearest.len() as u32, record.found, "{context}: {record:?}");
-            assert_eq!(nearest.last().map_or(0.0, |n| n.distance_sq), farthest_sq, "{context}: {record:?}");
+            search.collect_nearest(&query, k, &mut nearest);
+            let farthest = nearest.iter().fold(0f32, |farthest, (_, d2)| farthest.max(*d2));
+            assert_eq!((nearest.len() as u32, farthest), (record.found, farthest_sq), "{context}: {record:?}");
         }
     }
 }

@@ -23,4 +23,4 @@ pub use error::PhotonError;
 pub use kernel::Kernel;
 pub use list::{BuildOptions, DEFAULT_SEARCH, SEARCHES, SearchMember, build, find_search, kd_balanced};
 pub use photon::Photon;
-pub use search::{GatherQuery, Gathered, Neighbor, Search, SearchSummary};
+pub use search::{GatherQuery, Gathered, GatheredNearest, Neighbor, Search, SearchSummary};

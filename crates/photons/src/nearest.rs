@@ -9,6 +9,17 @@ pub(crate) struct NearestHeap<'a> {
     r2: f32,
 }
 
+/// Neighbours exactly as near as the farthest in a full heap.
+#[derive(Default)]
+pub(crate) struct Ties(Vec<Neighbor>);
+
+impl Ties {
+    /// All of them.
+    pub(crate) fn all(&self) -> &[Neighbor] {
+        &self.0
+    }
+}
+
 /// Order of answers.
 #[inline]
 pub(crate) fn closer(a: &Neighbor, b: &Neighbor) -> bool {
@@ -40,6 +51,24 @@ impl<'a> NearestHeap<'a> {
             self.sift_up();
         } else if closer(&neighbor, &self.heap[0]) {
             sift_down(self.heap, neighbor);
+        }
+    }
+
+    /// Offers a neighbour; those that are not kept but as near as the farthest kept go to `ties`.
+    #[inline]
+    pub(crate) fn offer_with_ties(&mut self, neighbor: Neighbor, ties: &mut Ties) {
+        if self.heap.len() < self.k || !(neighbor.distance_sq <= self.r2) {
+            self.offer(neighbor);
+        } else if neighbor.distance_sq < self.limit() {
+            let dropped = self.heap[0];
+            sift_down(self.heap, neighbor);
+            if dropped.distance_sq > self.limit() {
+                ties.0.clear();
+            } else {
+                ties.0.push(dropped);
+            }
+        } else if neighbor.distance_sq == self.limit() {
+            ties.0.push(neighbor);
         }
     }
 

@@ -27,6 +27,25 @@ pub struct Gathered {
     pub count: u32,
 }
 
+/// Sums over the nearest of the photons found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GatheredNearest {
+    /// Sum of kernel weight times flux, W.
+    pub flux: Vec3,
+    /// Photons that were summed.
+    pub count: u32,
+    /// Squared distance of the farthest of them, scene units squared; 0 without any.
+    pub farthest_sq: f32,
+}
+
+impl GatheredNearest {
+    /// The radius that `k` nearest photons were summed over: the distance of the farthest where there were as many as
+    /// that, the query's otherwise.
+    pub fn radius(&self, query: &GatherQuery, k: u32) -> f32 {
+        if self.count >= k { self.farthest_sq.sqrt() } else { query.radius }
+    }
+}
+
 /// A photon found, with the square of its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neighbor {
@@ -79,21 +98,40 @@ pub trait Search: Send + Sync {
     /// As [`Search::visit`], with the work added to `counters`.
     fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters);
 
+    /// As [`Search::gather`] over the `k` nearest of what it would sum: where those within the radius are more, only up
+    /// to the distance of the `k`th, with the kernel's radius at that distance. All photons at exactly that distance
+    /// count, so that there can be more than `k`; 0 finds nothing.
+    fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]);
+
+    /// As [`Search::gather_nearest`] with the work counted: the same results, more slowly, all on the calling thread.
+    fn gather_nearest_counted(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        kernel: Kernel,
+        out: &mut [GatheredNearest],
+        counters: &mut SearchCounters,
+    );
+
+    /// Collects the photons that [`Search::gather_nearest`] would sum for `query` with their squared distances, in an
+    /// order that depends on nothing but the photons; `found` is cleared first.
+    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>);
+
+    /// As [`Search::collect_nearest`], with the work added to `counters`.
+    fn collect_nearest_counted(
+        &self,
+        query: &GatherQuery,
+        k: u32,
+        found: &mut Vec<(Photon, f32)>,
+        counters: &mut SearchCounters,
+    );
+
     /// All photons within `radius` of `position` (closed), in ascending id; `found` is cleared first.
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>);
 
-    /// The `k` nearest photons within `radius`, by distance, ties by id; `found` is cleared first.
+    /// The `k` nearest photons within `radius`, whatever their normals and depths, by distance, ties by id; `found` is
+    /// cleared first.
     fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>);
-
-    /// As [`Search::nearest`], with the work added to `counters`; those found are those handed out.
-    fn nearest_counted(
-        &self,
-        position: Vec3,
-        k: usize,
-        radius: f32,
-        found: &mut Vec<Neighbor>,
-        counters: &mut SearchCounters,
-    );
 
     /// The photon of an id.
     ///

@@ -1,6 +1,6 @@
 //! Gathering by visiting: for members without a kernel of their own.
 
-use crate::{GatherQuery, Gathered, Kernel, Photon, Search};
+use crate::{GatherQuery, Gathered, GatheredNearest, Kernel, Photon, Search};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
@@ -62,4 +62,51 @@ pub(crate) fn gather_batch_by_visiting(
     assert_eq!(queries.len(), out.len(), "one result a query");
     let one = |(query, out): (&GatherQuery, &mut Gathered)| *out = gather_by_visiting(search, query, kernel);
     queries.par_iter().zip(out).with_min_len(QUERIES_A_TASK).for_each(one);
+}
+
+/// Sums the nearest photons that `collect` hands out, in their order.
+fn gather_collected(
+    query: &GatherQuery,
+    k: u32,
+    kernel: Kernel,
+    collect: impl FnOnce(&mut Vec<(Photon, f32)>),
+) -> GatheredNearest {
+    let mut found = Vec::new();
+    collect(&mut found);
+    let farthest_sq = found.iter().fold(0f32, |farthest, (_, d2)| farthest.max(*d2));
+    let nearest = GatheredNearest { flux: Vec3::ZERO, count: found.len() as u32, farthest_sq };
+    let radius = nearest.radius(query, k);
+    let mut sums = Sums::default();
+    found.iter().for_each(|(photon, d2)| sums.add(photon, kernel.weight(*d2, radius)));
+    GatheredNearest { flux: sums.gathered().flux, ..nearest }
+}
+
+/// [`Search::gather_nearest`] by [`Search::collect_nearest`].
+pub(crate) fn gather_nearest_by_collecting(
+    search: &dyn Search,
+    queries: &[GatherQuery],
+    k: u32,
+    kernel: Kernel,
+    out: &mut [GatheredNearest],
+) {
+    assert_eq!(queries.len(), out.len(), "one result a query");
+    let one = |(query, out): (&GatherQuery, &mut GatheredNearest)| {
+        *out = gather_collected(query, k, kernel, |found| search.collect_nearest(query, k, found));
+    };
+    queries.par_iter().zip(out).with_min_len(QUERIES_A_TASK).for_each(one);
+}
+
+/// [`Search::gather_nearest_counted`] by [`Search::collect_nearest_counted`].
+pub(crate) fn gather_nearest_counted_by_collecting(
+    search: &dyn Search,
+    queries: &[GatherQuery],
+    k: u32,
+    kernel: Kernel,
+    out: &mut [GatheredNearest],
+    counters: &mut SearchCounters,
+) {
+    assert_eq!(queries.len(), out.len(), "one result a query");
+    for (query, out) in queries.iter().zip(out) {
+        *out = gather_collected(query, k, kernel, |found| search.collect_nearest_counted(query, k, found, counters));
+    }
 }

@@ -5,7 +5,8 @@ mod support;
 
 use photinus_geometry::Vec3;
 use photinus_photons::{
-    BuildOptions, GatherQuery, Gathered, Kernel, Neighbor, Photon, SEARCHES, Search, build, kd_balanced,
+    BuildOptions, GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, SEARCHES, Search, build,
+    kd_balanced,
 };
 use photinus_profile::SearchCounters;
 use support::{SEED, Set, queries, sets};
@@ -128,11 +129,63 @@ fn neighbors_agree_with_the_oracle_bit_for_bit() {
                         search.nearest(query.position, k, radius, &mut found);
                         let expected = &by_distance[..k.min(by_distance.len())];
                         assert_eq!(found, expected, "{context}: {k} nearest within {radius}, {query:?}");
-                        let mut counters = SearchCounters::default();
-                        search.nearest_counted(query.position, k, radius, &mut found, &mut counters);
-                        assert_eq!(found, expected, "{context}: {k} nearest, counted");
-                        assert_counts(&counters, found.len(), set.photons.len(), context);
                     }
+                }
+            }
+        });
+    }
+}
+
+#[test]
+fn the_nearest_of_what_gather_finds_agree_with_the_oracle() {
+    const COUNTS: [u32; 5] = [0, 1, 7, 60, u32::MAX];
+    for set in sets() {
+        let oracle = oracle(&set);
+        let mut queries = queries(&set, 40);
+        // Small and large balls, so that the limit bites in some and not in others; then everything.
+        for (i, query) in queries.iter_mut().enumerate() {
+            query.radius *= [1.0, 4.0, f32::INFINITY][i % 3];
+        }
+        let words = |found: &[(Photon, f32)]| {
+            let mut words: Vec<_> = found.iter().map(|(photon, d2)| (d2.to_bits(), photon.to_words())).collect();
+            words.sort_unstable();
+            words
+        };
+        let expected = COUNTS.map(|k| {
+            let mut sums = vec![GatheredNearest::default(); queries.len()];
+            oracle.gather_nearest(&queries, k, Kernel::Epanechnikov, &mut sums);
+            let collected = queries.iter().map(|query| {
+                let mut found = Vec::new();
+                oracle.collect_nearest(query, k, &mut found);
+                words(&found)
+            });
+            (sums, collected.collect::<Vec<_>>())
+        });
+        for_each_member(&set, |context, search| {
+            for (k, (sums, collected)) in COUNTS.into_iter().zip(&expected) {
+                let mut found = vec![GatheredNearest { count: 9, ..Default::default() }; queries.len()];
+                search.gather_nearest(&queries, k, Kernel::Epanechnikov, &mut found);
+                for ((e, f), query) in sums.iter().zip(&found).zip(&queries) {
+                    let context = format!("{context}: {k} nearest, {query:?}");
+                    assert_eq!((e.count, e.farthest_sq), (f.count, f.farthest_sq), "{context}");
+                    let close = (e.flux - f.flux).abs().cmple(e.flux.abs() * 1e-5 + 1e-30).all();
+                    assert!(close, "{context}: {} for {}", f.flux, e.flux);
+                }
+                let (mut counters, mut counted) = (SearchCounters::default(), found.clone());
+                search.gather_nearest_counted(&queries, k, Kernel::Epanechnikov, &mut counted, &mut counters);
+                assert_eq!(counted, found, "{context}");
+                assert_eq!(counters.searches, queries.len() as u64, "{context}");
+                assert_eq!(counters.photons_found, found.iter().map(|f| u64::from(f.count)).sum::<u64>());
+                for (query, expected) in queries.iter().zip(collected) {
+                    let (mut collected, mut counters) = (Vec::new(), SearchCounters::default());
+                    search.collect_nearest(query, k, &mut collected);
+                    assert_eq!(&words(&collected), expected, "{context}: {k} nearest, {query:?}");
+                    let before = collected.clone();
+                    // What was there goes.
+                    collected.extend(before.clone());
+                    search.collect_nearest_counted(query, k, &mut collected, &mut counters);
+                    assert_eq!(collected, before, "{context}: counted");
+                    assert_counts(&counters, collected.len(), set.photons.len(), context);
                 }
             }
         });
@@ -176,6 +229,17 @@ fn every_member_knows_the_answers_of_three_photons() {
         assert_eq!(found, [neighbor(0.0, 2), neighbor(1.0, 0), neighbor(1.0, 1)], "{name}: ties go by id");
         search.within_radius(Vec3::ZERO, 1.0, &mut found);
         assert_eq!(found, [neighbor(0.0, 1), neighbor(1.0, 2)], "{name}");
+        let nearest = |k: u32, radius: f32, normal: Vec3, max_depth: u32| {
+            let query = GatherQuery { position: Vec3::new(1.0, 0.0, 0.0), radius, normal, max_depth };
+            let mut out = [GatheredNearest::default()];
+            search.gather_nearest(&[query], k, Kernel::Constant, &mut out);
+            (out[0].count, out[0].farthest_sq, out[0].flux)
+        };
+        assert_eq!(nearest(1, 3.0, Vec3::X, 9), (1, 0.0, wall), "{name}: the wall's photon");
+        assert_eq!(nearest(1, 3.0, Vec3::Z, 9), (2, 1.0, far + near), "{name}: both at the distance of the first");
+        assert_eq!(nearest(1, 3.0, Vec3::Z, 2), (1, 1.0, far), "{name}: depth");
+        assert_eq!(nearest(0, 3.0, Vec3::Z, 9), (0, 0.0, Vec3::ZERO), "{name}: none wanted");
+        assert_eq!(nearest(5, 0.9, Vec3::Z, 9), (0, 0.0, Vec3::ZERO), "{name}: none near");
         assert_eq!(search.photon(2), photons[2], "{name}");
         assert_eq!(search.summary().photons, 3, "{name}");
     }

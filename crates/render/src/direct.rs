@@ -5,7 +5,7 @@ use crate::bsdf::{LobeSet, TransportMode};
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::eye_pass::EyePass;
-use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
+use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps};
 use crate::recording::NOT_YET;
 use crate::tile::Tile;
 use crate::twin::Queries;
@@ -60,6 +60,7 @@ impl EyePass<'_> {
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
         let mut scratch = EstimateScratch::for_batch_of(&tracer);
         let mut found: Vec<Estimated> = Vec::new();
+        let mut estimates = Estimates::default();
         for sample in 0..self.spp {
             if observer.cancelled() {
                 return sample;
@@ -88,7 +89,7 @@ impl EyePass<'_> {
                     draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], x0, y0, w, sample)).next_1d()
                 });
                 nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
-                let mut estimates = Vec::new();
+                estimates.clear();
                 let mut next = Vec::new();
                 timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
                     for (node, hit) in nodes.iter().zip(&hits) {
@@ -98,7 +99,7 @@ impl EyePass<'_> {
                 });
                 counters.rays.specular += next.len() as u64;
                 maps.global.estimate(&estimates, maps.knn, &mut twin, &mut scratch, &mut found, counters);
-                for (e, found) in estimates.iter().zip(&found) {
+                for (e, found) in estimates.list.iter().zip(&found) {
                     tile.estimated(e.path, found);
                 }
                 scratch.hand_over(&mut tracer);
@@ -117,7 +118,7 @@ impl EyePass<'_> {
         sampler: impl FnOnce() -> Sampler,
         tile: &mut Tile,
         next: &mut Vec<Node>,
-        estimates: &mut Vec<Estimate>,
+        estimates: &mut Estimates,
     ) {
         if !hit.is_hit() {
             let radiance = self.lights.environment_radiance(node.ray.dir);
@@ -135,14 +136,15 @@ impl EyePass<'_> {
         }
         if bsdf.has(LobeSet::GATHER) {
             let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
-            estimates.push(Estimate {
+            let scatter = estimates.scatter(&bsdf);
+            estimates.list.push(Estimate {
                 query: GatherQuery {
                     position: point.position,
                     radius: 0.0,
                     normal: point.geometric_normal * side,
                     max_depth: 127,
                 },
-                bsdf,
+                scatter,
                 throughput: node.throughput,
                 path: node.pixel,
                 ray: node.record,

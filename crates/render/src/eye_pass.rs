@@ -9,7 +9,7 @@ use crate::counters::{Counters, timed};
 use crate::film::{Aov, FilmLayout};
 use crate::film_filter::FilterSampler;
 use crate::light::{Lights, Place};
-use crate::maps::{Estimate, EstimateScratch, Estimated, Maps};
+use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps};
 use crate::recording::NOT_YET;
 use crate::tile::{Part, Tile, Tiles};
 use crate::trace::{Tracer, shadow_ray};
@@ -173,14 +173,8 @@ impl EyePass<'_> {
     }
 
     /// Follows all paths of a batch to their ends; returns the estimates that they ask for.
-    fn follow(
-        &self,
-        mut paths: Vec<Path>,
-        tile: &mut Tile,
-        tracer: &mut Tracer,
-        counters: &mut Counters,
-    ) -> Vec<Estimate> {
-        let mut estimates = Vec::new();
+    fn follow(&self, mut paths: Vec<Path>, tile: &mut Tile, tracer: &mut Tracer, counters: &mut Counters) -> Estimates {
+        let mut estimates = Estimates::default();
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
         let (mut shadows, mut shadow_rays, mut visible) = (Vec::new(), Vec::new(), Vec::new());
         while !paths.is_empty() {
@@ -247,7 +241,7 @@ impl EyePass<'_> {
         tile: &mut Tile,
         next: &mut Vec<Path>,
         shadows: &mut Vec<Shadow>,
-        estimates: &mut Vec<Estimate>,
+        estimates: &mut Estimates,
     ) {
         path.depth += 1;
         path.width += path.spread * distance;
@@ -361,17 +355,18 @@ impl EyePass<'_> {
         bsdf: &Bsdf,
         wo: Vec3,
         next: &mut Vec<Path>,
-        estimates: &mut Vec<Estimate>,
+        estimates: &mut Estimates,
     ) {
         let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
-        estimates.push(Estimate {
+        let scatter = estimates.scatter(bsdf);
+        estimates.list.push(Estimate {
             query: GatherQuery {
                 position: point.position,
                 radius: 0.7 * path.width,
                 normal: point.geometric_normal * side,
                 max_depth: (self.max_depth - path.depth).min(127),
             },
-            bsdf: *bsdf,
+            scatter,
             throughput: path.throughput,
             path: path.pixel,
             ray: path.record,
@@ -468,7 +463,7 @@ impl EyePass<'_> {
     /// Answers the estimates of a batch from the maps.
     fn gather(
         &self,
-        estimates: &[Estimate],
+        estimates: &Estimates,
         twin: &mut Twin,
         tile: &mut Tile,
         tracer: &mut Tracer,
@@ -478,13 +473,13 @@ impl EyePass<'_> {
         let mut scratch = EstimateScratch::for_batch_of(tracer);
         let mut out: Vec<Estimated> = Vec::new();
         maps.global.estimate(estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-        for (e, found) in estimates.iter().zip(&out) {
+        for (e, found) in estimates.list.iter().zip(&out) {
             tile.add(e.path, Part::Indirect, found.radiance);
             tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
         }
         if let Some(caustic) = &maps.caustic {
             caustic.estimate(estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-            for (e, found) in estimates.iter().zip(&out) {
+            for (e, found) in estimates.list.iter().zip(&out) {
                 tile.add(e.path, Part::Caustic, found.radiance);
                 tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
             }

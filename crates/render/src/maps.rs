@@ -6,7 +6,7 @@ use crate::recording::{search_record, sum};
 use crate::trace::Tracer;
 use crate::twin::Twin;
 use photinus_geometry::Vec3;
-use photinus_photons::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search};
+use photinus_photons::{GatherQuery, Gathered, GatheredNearest, Kernel, Photon, Search};
 use photinus_profile::queries::{MapKind, SearchAnswer, SearchRecord};
 use photinus_profile::{SearchCounters, ticks, undisturbed};
 
@@ -31,12 +31,48 @@ pub(crate) struct Maps {
 /// An estimate to be made: where, for which way of seeing, and what it counts.
 pub(crate) struct Estimate {
     pub query: GatherQuery,
-    pub bsdf: Bsdf,
+    pub scatter: Scatter,
     pub throughput: Vec3,
     /// The path it belongs to.
     pub path: u32,
     /// Record of the ray that asks.
     pub ray: u32,
+}
+
+/// How the light of photons is scattered to where an estimate is asked for.
+#[derive(Clone, Copy)]
+pub(crate) enum Scatter {
+    /// Alike from all directions: by this factor, 1/sr.
+    Constant(Vec3),
+    /// As the scattering function of this number in the batch says.
+    ByDirection(u32),
+}
+
+/// The estimates of a batch.
+#[derive(Default)]
+pub(crate) struct Estimates {
+    pub list: Vec<Estimate>,
+    /// Scattering functions that depend on directions; few surfaces need theirs kept.
+    bsdfs: Vec<Bsdf>,
+}
+
+impl Estimates {
+    /// Keeps of a scattering function what an estimate needs.
+    pub fn scatter(&mut self, bsdf: &Bsdf) -> Scatter {
+        match bsdf.constant(LobeSet::GATHER) {
+            Some(factor) => Scatter::Constant(factor),
+            None => {
+                self.bsdfs.push(*bsdf);
+                Scatter::ByDirection(self.bsdfs.len() as u32 - 1)
+            }
+        }
+    }
+
+    /// Starts again.
+    pub fn clear(&mut self) {
+        self.list.clear();
+        self.bsdfs.clear();
+    }
 }
 
 /// What an estimate found: reflected radiance times throughput, and photons per area.
@@ -54,7 +90,7 @@ pub(crate) struct EstimateScratch {
     queries: Vec<GatherQuery>,
     slots: Vec<usize>,
     gathered: Vec<Gathered>,
-    neighbors: Vec<Neighbor>,
+    nearest: Vec<GatheredNearest>,
     visited: Vec<(Photon, f32)>,
 }
 
@@ -77,32 +113,33 @@ impl Map {
     /// that of the map: a wide pixel gathers over its own width.
     pub fn estimate(
         &self,
-        estimates: &[Estimate],
+        estimates: &Estimates,
         knn: Option<u32>,
         twin: &mut Twin,
         scratch: &mut EstimateScratch,
         out: &mut Vec<Estimated>,
         counters: &mut Counters,
     ) {
+        let Estimates { list, bsdfs } = estimates;
         out.clear();
-        out.resize(estimates.len(), Estimated::default());
-        counters.searches += estimates.len() as u64;
+        out.resize(list.len(), Estimated::default());
+        counters.searches += list.len() as u64;
         let mut nanoseconds = 0;
         timed(twin.is_on(), &mut nanoseconds, || {
-            for (run, counted) in twin.runs(estimates.len()) {
-                let (estimates, out) = (&estimates[run.clone()], &mut out[run]);
+            for (run, counted) in twin.runs(list.len()) {
+                let (estimates, out) = (&list[run.clone()], &mut out[run]);
                 if counted {
                     let before = counters.sampled_estimates;
                     let steady = undisturbed(|| {
                         let begun = ticks();
-                        self.estimate_run::<true>(estimates, knn, scratch, out, counters);
+                        self.estimate_run::<true>(estimates, bsdfs, knn, scratch, out, counters);
                         counters.sampled_estimates.total += ticks().wrapping_sub(begun);
                     });
                     if !steady {
                         counters.sampled_estimates = before;
                     }
                 } else {
-                    self.estimate_run::<false>(estimates, knn, scratch, out, counters);
+                    self.estimate_run::<false>(estimates, bsdfs, knn, scratch, out, counters);
                 }
             }
         });
@@ -113,6 +150,7 @@ impl Map {
     fn estimate_run<const COUNT: bool>(
         &self,
         estimates: &[Estimate],
+        bsdfs: &[Bsdf],
         knn: Option<u32>,
         scratch: &mut EstimateScratch,
         out: &mut [Estimated],
@@ -122,47 +160,88 @@ impl Map {
         scratch.slots.clear();
         for (i, e) in estimates.iter().enumerate() {
             let query = GatherQuery { radius: self.radius_for(e.query.radius), ..e.query };
-            let constant = e.bsdf.constant(LobeSet::GATHER);
-            if let Some(k) = knn {
-                out[i] = self.nearest::<COUNT>(e, &query, k as usize, &mut scratch.neighbors, counters);
-                if let Some(records) = &mut scratch.records {
-                    let farthest_sq = scratch.neighbors.last().map_or(0.0, |n| n.distance_sq);
-                    let answer = SearchAnswer::Nearest { k, farthest_sq };
-                    let found = scratch.neighbors.len() as u32;
-                    records.push(search_record(self.kind, self.kernel, e.ray, &query, found, answer));
+            match e.scatter {
+                Scatter::Constant(_) => {
+                    scratch.queries.push(query);
+                    scratch.slots.push(i);
                 }
-            } else if constant.is_some() {
-                scratch.queries.push(query);
-                scratch.slots.push(i);
-            } else {
-                let before = counters.photons_found;
-                out[i] = self.each::<COUNT>(e, &query, &mut scratch.visited, counters);
-                if let Some(records) = &mut scratch.records {
-                    let found = (counters.photons_found - before) as u32;
-                    records.push(search_record(self.kind, self.kernel, e.ray, &query, found, SearchAnswer::Visited));
+                Scatter::ByDirection(bsdf) => {
+                    let bsdf = &bsdfs[bsdf as usize];
+                    out[i] = match knn {
+                        Some(k) => self.each_nearest::<COUNT>(e, bsdf, &query, k, scratch, counters),
+                        None => self.each::<COUNT>(e, bsdf, &query, scratch, counters),
+                    };
                 }
             }
         }
-        scratch.gathered.clear();
-        scratch.gathered.resize(scratch.queries.len(), Gathered::default());
+        match knn {
+            Some(k) => self.sum_nearest::<COUNT>(estimates, k, scratch, out, counters),
+            None => self.sum::<COUNT>(estimates, scratch, out, counters),
+        }
+    }
+
+    /// Estimates on surfaces that scatter alike from all directions: sums of what the queries find.
+    fn sum<const COUNT: bool>(
+        &self,
+        estimates: &[Estimate],
+        scratch: &mut EstimateScratch,
+        out: &mut [Estimated],
+        counters: &mut Counters,
+    ) {
+        let EstimateScratch { records, queries, slots, gathered, .. } = scratch;
+        gathered.clear();
+        gathered.resize(queries.len(), Gathered::default());
         if COUNT {
-            let (queries, gathered) = (&scratch.queries, &mut scratch.gathered);
             stamped(counters, |counted| self.search.gather_counted(queries, self.kernel, gathered, counted));
         } else {
-            self.search.gather(&scratch.queries, self.kernel, &mut scratch.gathered);
+            self.search.gather(queries, self.kernel, gathered);
         }
-        for ((&i, query), found) in scratch.slots.iter().zip(&scratch.queries).zip(&scratch.gathered) {
+        for ((&i, query), found) in slots.iter().zip(queries).zip(gathered) {
             let e = &estimates[i];
             counters.photons_found += u64::from(found.count);
-            if let Some(records) = &mut scratch.records {
+            if let Some(records) = records {
                 records.push(search_record(self.kind, self.kernel, e.ray, query, found.count, sum(found.flux)));
             }
-            if let Some(factor) = e.bsdf.constant(LobeSet::GATHER) {
-                let irradiance = found.flux / self.kernel.area(query.radius);
-                let disc = std::f32::consts::PI * query.radius * query.radius;
-                out[i] = Estimated { radiance: e.throughput * factor * irradiance, density: found.count as f32 / disc };
-            }
+            out[i] = self.estimated(e, found.flux, found.count, query.radius);
         }
+    }
+
+    /// As [`Self::sum`], over the `k` nearest at most.
+    fn sum_nearest<const COUNT: bool>(
+        &self,
+        estimates: &[Estimate],
+        k: u32,
+        scratch: &mut EstimateScratch,
+        out: &mut [Estimated],
+        counters: &mut Counters,
+    ) {
+        let EstimateScratch { records, queries, slots, nearest, .. } = scratch;
+        nearest.clear();
+        nearest.resize(queries.len(), GatheredNearest::default());
+        if COUNT {
+            let count = |counted: &mut SearchCounters| {
+                self.search.gather_nearest_counted(queries, k, self.kernel, nearest, counted);
+            };
+            stamped(counters, count);
+        } else {
+            self.search.gather_nearest(queries, k, self.kernel, nearest);
+        }
+        for ((&i, query), found) in slots.iter().zip(queries).zip(nearest) {
+            let e = &estimates[i];
+            counters.photons_found += u64::from(found.count);
+            if let Some(records) = records {
+                let answer = SearchAnswer::Nearest { k, farthest_sq: found.farthest_sq };
+                records.push(search_record(self.kind, self.kernel, e.ray, query, found.count, answer));
+            }
+            out[i] = self.estimated(e, found.flux, found.count, found.radius(query, k));
+        }
+    }
+
+    /// Radiance by the sum of weighted flux within a radius.
+    fn estimated(&self, e: &Estimate, flux: Vec3, count: u32, radius: f32) -> Estimated {
+        let Scatter::Constant(factor) = e.scatter else { return Estimated::default() };
+        let irradiance = flux / self.kernel.area(radius.max(LEAST_RADIUS));
+        Estimated { radiance: e.throughput * factor * irradiance, density: density(count, radius) }
     }
 
     /// The map's radius, or the pixel's where that is wider, up to three times the map's so that far pixels do not
@@ -176,18 +255,20 @@ impl Map {
     fn each<const COUNT: bool>(
         &self,
         e: &Estimate,
+        bsdf: &Bsdf,
         query: &GatherQuery,
-        visited: &mut Vec<(Photon, f32)>,
+        scratch: &mut EstimateScratch,
         counters: &mut Counters,
     ) -> Estimated {
         let mut sum = Vec3::ZERO;
         let mut count = 0u32;
         let mut add = |photon: &Photon, distance_sq: f32| {
             let weight = self.kernel.weight(distance_sq, query.radius);
-            sum += scattered(e, photon.direction()) * photon.flux() * weight;
+            sum += scattered(bsdf, photon.direction()) * photon.flux() * weight;
             count += 1;
         };
         if COUNT {
+            let visited = &mut scratch.visited;
             visited.clear();
             stamped(counters, |counted| {
                 self.search.visit_counted(query, &mut |photon, d2| visited.push((*photon, d2)), counted);
@@ -197,48 +278,54 @@ impl Map {
             self.search.visit(query, &mut add);
         }
         counters.photons_found += u64::from(count);
+        if let Some(records) = &mut scratch.records {
+            records.push(search_record(self.kind, self.kernel, e.ray, query, count, SearchAnswer::Visited));
+        }
         Estimated {
             radiance: e.throughput * sum / self.kernel.area(query.radius),
-            density: count as f32 / (std::f32::consts::PI * query.radius * query.radius),
+            density: density(count, query.radius),
         }
     }
 
-    /// The `k` nearest photons at most; where the cap bites, the area is that of the farthest one taken.
-    fn nearest<const COUNT: bool>(
+    /// As [`Self::each`], over the `k` nearest at most.
+    fn each_nearest<const COUNT: bool>(
         &self,
         e: &Estimate,
+        bsdf: &Bsdf,
         query: &GatherQuery,
-        k: usize,
-        neighbors: &mut Vec<Neighbor>,
+        k: u32,
+        scratch: &mut EstimateScratch,
         counters: &mut Counters,
     ) -> Estimated {
+        let visited = &mut scratch.visited;
         if COUNT {
-            stamped(counters, |counted| {
-                self.search.nearest_counted(query.position, k, query.radius, neighbors, counted);
-            });
+            stamped(counters, |counted| self.search.collect_nearest_counted(query, k, visited, counted));
         } else {
-            self.search.nearest(query.position, k, query.radius, neighbors);
+            self.search.collect_nearest(query, k, visited);
         }
-        counters.photons_found += neighbors.len() as u64;
-        let radius = if neighbors.len() == k {
-            neighbors.last().map_or(query.radius, |n| n.distance_sq.sqrt())
-        } else {
-            query.radius
-        };
+        let count = visited.len() as u32;
+        let farthest_sq = visited.iter().fold(0f32, |farthest, (_, d2)| farthest.max(*d2));
+        counters.photons_found += u64::from(count);
+        if let Some(records) = &mut scratch.records {
+            let answer = SearchAnswer::Nearest { k, farthest_sq };
+            records.push(search_record(self.kind, self.kernel, e.ray, query, count, answer));
+        }
+        let radius = GatheredNearest { flux: Vec3::ZERO, count, farthest_sq }.radius(query, k);
         let mut sum = Vec3::ZERO;
-        for n in neighbors.iter() {
-            let photon = self.search.photon(n.photon);
-            if photon.depth() <= query.max_depth && photon.normal().dot(query.normal) >= 0.5 {
-                let weight = self.kernel.weight(n.distance_sq, radius);
-                sum += scattered(e, photon.direction()) * photon.flux() * weight;
-            }
+        for (photon, d2) in visited {
+            sum += scattered(bsdf, photon.direction()) * photon.flux() * self.kernel.weight(*d2, radius);
         }
-        let area = self.kernel.area(radius.max(1e-20));
-        Estimated {
-            radiance: e.throughput * sum / area,
-            density: neighbors.len() as f32 / (std::f32::consts::PI * radius * radius).max(1e-20),
-        }
+        let area = self.kernel.area(radius.max(LEAST_RADIUS));
+        Estimated { radiance: e.throughput * sum / area, density: density(count, radius) }
     }
+}
+
+/// Photons that all lie at the very place asked about are spread over a disc of this radius, scene units.
+const LEAST_RADIUS: f32 = 1e-18;
+
+/// Photons per area.
+fn density(count: u32, radius: f32) -> f32 {
+    count as f32 / (std::f32::consts::PI * radius * radius).max(1e-20)
 }
 
 /// Runs a counted search between two stamps.
@@ -249,10 +336,10 @@ fn stamped(counters: &mut Counters, search: impl FnOnce(&mut SearchCounters)) {
 }
 
 /// Scattering without the cosine: the density of photons already counts it.
-fn scattered(e: &Estimate, wi: Vec3) -> Vec3 {
-    let cos = e.bsdf.shading_normal().dot(wi).abs();
+fn scattered(bsdf: &Bsdf, wi: Vec3) -> Vec3 {
+    let cos = bsdf.shading_normal().dot(wi).abs();
     if cos < 1e-4 {
         return Vec3::ZERO;
     }
-    e.bsdf.eval(LobeSet::GATHER, wi, TransportMode::Radiance) / cos
+    bsdf.eval(LobeSet::GATHER, wi, TransportMode::Radiance) / cos
 }

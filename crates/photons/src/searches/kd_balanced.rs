@@ -6,9 +6,12 @@
 //! in which their box is longest.
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
-use crate::nearest::NearestHeap;
-use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
-use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
+use crate::nearest::{NearestHeap, Ties};
+use crate::visiting::{
+    gather_batch_by_visiting, gather_counted_by_visiting, gather_nearest_by_collecting,
+    gather_nearest_counted_by_collecting,
+};
+use crate::{GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::{Aabb, Vec3};
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
@@ -216,6 +219,47 @@ impl Search for KdBalanced {
         *counters += SearchCounters { searches: 1, photons_tested, photons_found };
     }
 
+    fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
+        gather_nearest_by_collecting(self, queries, k, kernel, out);
+    }
+
+    fn gather_nearest_counted(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        kernel: Kernel,
+        out: &mut [GatheredNearest],
+        counters: &mut SearchCounters,
+    ) {
+        gather_nearest_counted_by_collecting(self, queries, k, kernel, out, counters);
+    }
+
+    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>) {
+        self.collect_nearest_counted(query, k, found, &mut SearchCounters::default());
+    }
+
+    fn collect_nearest_counted(
+        &self,
+        query: &GatherQuery,
+        k: u32,
+        found: &mut Vec<(Photon, f32)>,
+        counters: &mut SearchCounters,
+    ) {
+        let prepared = PreparedQuery::new(query, Kernel::Constant);
+        let mut nearest = Vec::with_capacity(k.min(1024) as usize);
+        let mut ties = Ties::default();
+        let mut heap = NearestHeap::new(&mut nearest, k as usize, prepared.r2);
+        let photons_tested = self.traverse(query.position, heap.limit(), |node, distance_sq| {
+            if prepared.accepts(self.payloads[node][2]) {
+                heap.offer_with_ties(Neighbor { distance_sq, photon: node as u32 }, &mut ties);
+            }
+            heap.limit()
+        });
+        found.clear();
+        found.extend(nearest.iter().chain(ties.all()).map(|n| (self.photon_at(n.photon as usize), n.distance_sq)));
+        *counters += SearchCounters { searches: 1, photons_tested, photons_found: found.len() as u64 };
+    }
+
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
         let r2 = radius_sq(position, radius);
         found.clear();
@@ -227,24 +271,12 @@ impl Search for KdBalanced {
     }
 
     fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>) {
-        self.nearest_counted(position, k, radius, found, &mut SearchCounters::default());
-    }
-
-    fn nearest_counted(
-        &self,
-        position: Vec3,
-        k: usize,
-        radius: f32,
-        found: &mut Vec<Neighbor>,
-        counters: &mut SearchCounters,
-    ) {
         let mut heap = NearestHeap::new(found, k, radius_sq(position, radius));
-        let photons_tested = self.traverse(position, heap.limit(), |node, distance_sq| {
+        self.traverse(position, heap.limit(), |node, distance_sq| {
             heap.offer(Neighbor { distance_sq, photon: self.nodes[node].id() });
             heap.limit()
         });
         heap.finish();
-        *counters += SearchCounters { searches: 1, photons_tested, photons_found: found.len() as u64 };
     }
 
     fn photon(&self, id: u32) -> Photon {

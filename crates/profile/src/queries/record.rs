@@ -88,7 +88,8 @@ pub enum SearchAnswer {
     Sum([f32; 3]),
     /// The same photons, handed out one by one.
     Visited,
-    /// The `k` nearest within the radius, whatever their normals; squared distance of the farthest (0 without any).
+    /// The `k` nearest of what a sum would count (all at the distance of the last); squared distance of the farthest (0 without
+    /// any).
     Nearest {
         /// Most photons asked for.
         k: u32,

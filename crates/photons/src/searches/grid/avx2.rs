@@ -5,6 +5,7 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
+use super::kth::kth_least;
 use crate::Gathered;
 use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
@@ -21,7 +22,7 @@ const HALF: usize = 8;
 pub(crate) fn kernels() -> Option<VectorKernels> {
     let has_all =
         is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
-    has_all.then_some(VectorKernels { name: "avx2", cull, prefetch, gather, select, scan })
+    has_all.then_some(VectorKernels { name: "avx2", cull, prefetch, gather, select, scan, kth })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
@@ -63,6 +64,18 @@ fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec
 fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
     // SAFETY: as above.
     unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
+}
+
+fn kth(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    k: usize,
+    memo: &mut NormalMemo,
+    distances_sq: &mut Vec<f32>,
+) -> Option<f32> {
+    // SAFETY: as above.
+    unsafe { kth_distance(blocks, hits, query, k, memo, distances_sq) }
 }
 
 /// Half of a block's field as a vector.
@@ -319,4 +332,27 @@ fn scan_blocks(
         }
         limit = candidates.push(count).unwrap_or(limit);
     }
+}
+
+#[target_feature(enable = "avx2,popcnt,bmi1")]
+fn kth_distance(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    k: usize,
+    memo: &mut NormalMemo,
+    distances_sq: &mut Vec<f32>,
+) -> Option<f32> {
+    let mut inclusion = Inclusion::new(query, memo);
+    for &block in hits {
+        let photons = &blocks[block as usize];
+        let [low, high] = [0, 1].map(|half| inclusion.test(photons, half));
+        let mut lanes = (_mm256_movemask_ps(low.0) | _mm256_movemask_ps(high.0) << HALF) as u32;
+        let d2 = stored([low.1, high.1]);
+        while lanes != 0 {
+            distances_sq.push(d2[lanes.trailing_zeros() as usize]);
+            lanes &= lanes - 1;
+        }
+    }
+    (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
 }

@@ -5,6 +5,7 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::Candidates;
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
+use super::kth::kth_least;
 use crate::Gathered;
 use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
@@ -18,7 +19,7 @@ use std::ops::Range;
 pub(crate) fn kernels() -> Option<VectorKernels> {
     let has_all =
         is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
-    has_all.then_some(VectorKernels { name: "avx512", cull, prefetch, gather, select, scan })
+    has_all.then_some(VectorKernels { name: "avx512", cull, prefetch, gather, select, scan, kth })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
@@ -60,6 +61,18 @@ fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec
 fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
     // SAFETY: as above.
     unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
+}
+
+fn kth(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    k: usize,
+    memo: &mut NormalMemo,
+    distances_sq: &mut Vec<f32>,
+) -> Option<f32> {
+    // SAFETY: as above.
+    unsafe { kth_distance(blocks, hits, query, k, memo, distances_sq) }
 }
 
 /// A block's field as a vector.
@@ -325,4 +338,27 @@ fn scan_blocks(
             limit = _mm512_set1_ps(closer);
         }
     }
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn kth_distance(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    k: usize,
+    memo: &mut NormalMemo,
+    distances_sq: &mut Vec<f32>,
+) -> Option<f32> {
+    let mut inclusion = Inclusion::new(query, memo);
+    distances_sq.reserve(hits.len() * LANES + LANES);
+    for block in hits {
+        let (found, d2) = inclusion.test(&blocks[*block as usize]);
+        // SAFETY: there is room for sixteen a block, of which the first ones, as many as `found` has bits, are kept.
+        unsafe {
+            let end = distances_sq.as_mut_ptr().add(distances_sq.len());
+            _mm512_storeu_ps(end, _mm512_maskz_compress_ps(found, d2));
+            distances_sq.set_len(distances_sq.len() + found.count_ones() as usize);
+        }
+    }
+    (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
 }

@@ -62,7 +62,7 @@ impl Grid {
     }
 
     /// Whether consecutive queries mostly share their half cells, so that any order of ours would be no better.
-    fn are_coherent(&self, queries: &[GatherQuery]) -> bool {
+    pub(super) fn are_coherent(&self, queries: &[GatherQuery]) -> bool {
         let half_cell = |query: &GatherQuery| Cells::half_cell(self.cells.place(query.position));
         let step = (queries.len() / SAMPLES).max(1);
         let pairs = || queries.windows(2).step_by(step);
@@ -71,7 +71,7 @@ impl Grid {
     }
 
     /// Indices of queries in the order of their half cells.
-    fn sorted(&self, queries: &[GatherQuery]) -> Vec<usize> {
+    pub(super) fn sorted(&self, queries: &[GatherQuery]) -> Vec<usize> {
         let key = |query: &GatherQuery| self.cells.order(query.position) << 16;
         let mut keys: Vec<u64> = (0u64..).zip(queries).map(|(i, query)| key(query) | i).collect();
         keys.sort_unstable();

@@ -39,6 +39,10 @@ pub(crate) type Select = fn(&[Block], &[u32], &PreparedQuery, &mut Vec<Selected>
 /// Collects the photons within a squared radius of a position in these blocks; the ids of all blocks come second.
 pub(crate) type Scan = fn(&[Block], &[[u32; LANES]], &[u32], Vec3, f32, &mut Candidates);
 
+/// Collects the squared distances of what a query finds in these blocks and returns the k-th least of them, `None` where
+/// they are fewer than k; k is at least 1.
+pub(crate) type Kth = fn(&[Block], &[u32], &PreparedQuery, usize, &mut NormalMemo, &mut Vec<f32>) -> Option<f32>;
+
 /// Kernels for one width of vectors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VectorKernels {
@@ -48,6 +52,7 @@ pub(crate) struct VectorKernels {
     pub(crate) gather: Gather,
     pub(crate) select: Select,
     pub(crate) scan: Scan,
+    pub(crate) kth: Kth,
 }
 
 /// Photons of a block that a query finds.

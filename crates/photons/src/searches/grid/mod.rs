@@ -15,6 +15,8 @@ mod build;
 mod candidates;
 mod cells;
 mod kernels;
+mod kth;
+mod narrow;
 mod reach;
 mod scalar;
 mod sort;
@@ -23,12 +25,13 @@ mod table;
 mod tests;
 
 use crate::inclusion::{PreparedQuery, radius_sq};
-use crate::{BuildOptions, GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
+use crate::{BuildOptions, GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, Search, SearchSummary};
 use blocks::{Block, Boxes, LANES};
 use build::{Built, build};
 use candidates::Candidates;
 use cells::Cells;
 use kernels::{Selected, VectorKernels};
+use narrow::NearestFinder;
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
@@ -72,6 +75,18 @@ impl Grid {
         let reads_last = scratch.hits.last().is_some_and(|block| *block as usize + 1 == self.blocks.len());
         (lanes - if reads_last { self.blocks.len() * LANES - self.photon_count } else { 0 }) as u64
     }
+
+    /// Calls `visit` with the selected photons in the order of the blocks.
+    fn hand_out(&self, selected: &[Selected], visit: &mut dyn FnMut(&Photon, f32)) {
+        for &Selected { block, mut lanes, distances_sq } in selected {
+            let block = &self.blocks[block as usize];
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                visit(&block.photon(lane), distances_sq[lane]);
+                lanes &= lanes - 1;
+            }
+        }
+    }
 }
 
 impl Search for Grid {
@@ -109,14 +124,7 @@ impl Search for Grid {
         self.find_blocks(query.position, query.radius, prepared.r2, &mut scratch);
         let mut selected = Vec::with_capacity(scratch.hits.len());
         (self.kernels.select)(&self.blocks, &scratch.hits, &prepared, &mut selected);
-        for Selected { block, mut lanes, distances_sq } in selected {
-            let block = &self.blocks[block as usize];
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros() as usize;
-                visit(&block.photon(lane), distances_sq[lane]);
-                lanes &= lanes - 1;
-            }
-        }
+        self.hand_out(&selected, visit);
     }
 
     fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters) {
@@ -130,6 +138,50 @@ impl Search for Grid {
         *counters += SearchCounters { searches: 1, photons_tested: self.photons_in(&scratch), photons_found };
     }
 
+    fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
+        assert_eq!(queries.len(), out.len(), "one result a query");
+        let parts = queries.par_chunks(QUERIES_A_TASK).zip(out.par_chunks_mut(QUERIES_A_TASK));
+        parts.for_each(|(queries, out)| {
+            self.gather_nearest_part(queries, k, kernel, out);
+        });
+    }
+
+    fn gather_nearest_counted(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        kernel: Kernel,
+        out: &mut [GatheredNearest],
+        counters: &mut SearchCounters,
+    ) {
+        assert_eq!(queries.len(), out.len(), "one result a query");
+        for (queries, out) in queries.chunks(QUERIES_A_TASK).zip(out.chunks_mut(QUERIES_A_TASK)) {
+            counters.photons_tested += self.gather_nearest_part(queries, k, kernel, out);
+        }
+        counters.searches += queries.len() as u64;
+        counters.photons_found += out.iter().map(|out| u64::from(out.count)).sum::<u64>();
+    }
+
+    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>) {
+        self.collect_nearest_counted(query, k, found, &mut SearchCounters::default());
+    }
+
+    fn collect_nearest_counted(
+        &self,
+        query: &GatherQuery,
+        k: u32,
+        found: &mut Vec<(Photon, f32)>,
+        counters: &mut SearchCounters,
+    ) {
+        found.clear();
+        let mut finder = NearestFinder::new();
+        let nearest = self.narrow(PreparedQuery::new(query, Kernel::Constant), query.radius, k, &mut finder);
+        let mut selected = Vec::with_capacity(finder.scratch.hits.len());
+        (self.kernels.select)(&self.blocks, &finder.scratch.hits, &nearest, &mut selected);
+        self.hand_out(&selected, &mut |photon, d2| found.push((*photon, d2)));
+        *counters += SearchCounters { searches: 1, photons_tested: finder.tested, photons_found: found.len() as u64 };
+    }
+
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
         let mut scratch = Scratch::new();
         let r2 = radius_sq(position, radius);
@@ -140,21 +192,9 @@ impl Search for Grid {
         found.sort_unstable_by_key(|n| n.photon);
     }
 
-    fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>) {
-        self.nearest_counted(position, k, radius, found, &mut SearchCounters::default());
-    }
-
     /// Searches balls that grow until one holds `k` photons: those nearest are among them.
-    fn nearest_counted(
-        &self,
-        position: Vec3,
-        k: usize,
-        radius: f32,
-        found: &mut Vec<Neighbor>,
-        counters: &mut SearchCounters,
-    ) {
+    fn nearest(&self, position: Vec3, k: usize, radius: f32, found: &mut Vec<Neighbor>) {
         found.clear();
-        counters.searches += 1;
         let r2 = radius_sq(position, radius);
         if k == 0 || r2 < 0.0 {
             return;
@@ -167,7 +207,6 @@ impl Search for Grid {
             let (ball, ball_sq) = if last { (radius, r2) } else { (reach, reach * reach) };
             self.find_blocks(position, ball, ball_sq, &mut scratch);
             candidates.clear();
-            counters.photons_tested += self.photons_in(&scratch);
             (self.kernels.scan)(&self.blocks, &self.ids, &scratch.hits, position, ball_sq, &mut candidates);
             if last || candidates.len() >= k || candidates.len() == self.photon_count {
                 break;
@@ -175,7 +214,6 @@ impl Search for Grid {
             reach *= 2.0;
         }
         candidates.finish(found);
-        counters.photons_found += found.len() as u64;
     }
 
     fn photon(&self, id: u32) -> Photon {

@@ -3,6 +3,7 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
 use super::kernels::{NormalMemo, Selected, VectorKernels};
+use super::kth::kth_least;
 use crate::Gathered;
 use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
 use crate::inclusion::PreparedQuery;
@@ -11,7 +12,7 @@ use std::ops::Range;
 
 /// These kernels, for any processor.
 pub(crate) const KERNELS: VectorKernels =
-    VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, select, scan };
+    VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, select, scan, kth };
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
     let position = position.to_array();
@@ -82,4 +83,20 @@ fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2
         }
         limit = candidates.push(count).unwrap_or(limit);
     }
+}
+
+fn kth(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    k: usize,
+    _: &mut NormalMemo,
+    distances_sq: &mut Vec<f32>,
+) -> Option<f32> {
+    for block in hits.iter().map(|block| &blocks[*block as usize]) {
+        let lanes = block.distances_sq(query.position).into_iter().zip(block.surface);
+        let found = lanes.filter(|(d2, surface)| *d2 <= query.r2 && query.accepts(*surface));
+        distances_sq.extend(found.map(|(d2, _)| d2));
+    }
+    (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
 }

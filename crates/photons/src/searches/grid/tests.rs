@@ -31,6 +31,16 @@ fn vector_kernels_equal_the_scalar_kernel_bit_for_bit() {
                 };
                 assert_eq!(gather(&vector), gather(&scalar), "{context}, {kernel:?}");
             }
+            for k in [1, 40, 1000] {
+                let gather = |grid: &Grid| {
+                    let mut out = vec![GatheredNearest::default(); queries.len()];
+                    grid.gather_nearest(&queries, k, Kernel::Gaussian, &mut out);
+                    let sums = |g: &GatheredNearest| [g.flux.x, g.flux.y, g.flux.z, g.farthest_sq].map(f32::to_bits);
+                    out.iter().map(|g| (g.count, sums(g))).collect::<Vec<_>>()
+                };
+                let (vector, scalar) = (gather(&vector), gather(&scalar));
+                assert_eq!(vector, scalar, "{context}, {k} nearest");
+            }
             let (mut expected, mut found) = (Vec::new(), Vec::new());
             for query in &queries {
                 scalar.within_radius(query.position, query.radius, &mut expected);
@@ -74,6 +84,13 @@ fn results_depend_on_neither_batch_nor_threads() {
             let mut out = [Gathered::default()];
             grid.gather(std::slice::from_ref(query), Kernel::Epanechnikov, &mut out);
             assert_eq!(bits(&out), [*expected], "seed {SEED}: alone on '{}': {query:?}", set.name);
+        }
+        let mut nearest = vec![GatheredNearest::default(); queries.len()];
+        grid.gather_nearest(&queries, 30, Kernel::Epanechnikov, &mut nearest);
+        for (query, expected) in queries.iter().zip(&nearest).take(300) {
+            let mut out = [GatheredNearest::default()];
+            grid.gather_nearest(std::slice::from_ref(query), 30, Kernel::Epanechnikov, &mut out);
+            assert_eq!(&out[0], expected, "seed {SEED}: 30 nearest, alone on '{}': {query:?}", set.name);
         }
         queries.reverse();
         let mut reversed = gather(2, &queries);

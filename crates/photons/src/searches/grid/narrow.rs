@@ -1,0 +1,117 @@
+//! Searches for the k nearest: balls about as large as the last one needed, the k-th distance, then sums within it.
+
+use super::Grid;
+use super::kernels::NormalMemo;
+use super::reach::Scratch;
+use crate::inclusion::PreparedQuery;
+use crate::kernel::PreparedKernel;
+use crate::{GatherQuery, GatheredNearest, Kernel};
+
+/// A ball this much wider than that of the neighbouring query holds enough photons most of the time.
+const WIDER: f32 = 1.1;
+
+/// Balls that are tried before the query's own.
+const ATTEMPTS: u32 = 8;
+
+/// What one search for the nearest hands to the next; results do not depend on it.
+pub(crate) struct NearestFinder {
+    pub(crate) scratch: Scratch,
+    memo: NormalMemo,
+    distances_sq: Vec<f32>,
+    /// Radius that the last query needed; zero before the first.
+    last_radius: f32,
+    /// Photons tested since it was made.
+    pub(crate) tested: u64,
+}
+
+impl NearestFinder {
+    pub(crate) fn new() -> Self {
+        Self {
+            scratch: Scratch::new(),
+            memo: NormalMemo::NONE,
+            distances_sq: Vec::with_capacity(512),
+            last_radius: 0.0,
+            tested: 0,
+        }
+    }
+}
+
+impl Grid {
+    /// Narrows a query of this radius to its `k` nearest photons, and leaves the blocks that hold them in the finder.
+    pub(crate) fn narrow(
+        &self,
+        mut query: PreparedQuery,
+        radius: f32,
+        k: u32,
+        finder: &mut NearestFinder,
+    ) -> PreparedQuery {
+        let whole = query.r2;
+        if k == 0 || !(whole >= 0.0) {
+            finder.scratch.hits.clear();
+            query.r2 = -1.0;
+            return query;
+        }
+        let even = self.cells.reach(query.position, k as usize, self.table.photons_a_cell());
+        let mut reach = if finder.last_radius > 0.0 { (finder.last_radius * WIDER).max(0.1 * even) } else { even };
+        for attempt in 1.. {
+            let last = !(reach < radius) || attempt > ATTEMPTS;
+            let (ball, ball_sq) = if last { (radius, whole) } else { (reach, reach * reach) };
+            query.r2 = ball_sq;
+            self.find_blocks(query.position, ball, ball_sq, &mut finder.scratch);
+            finder.tested += self.photons_in(&finder.scratch);
+            finder.distances_sq.clear();
+            let kth = (self.kernels.kth)(
+                &self.blocks,
+                &finder.scratch.hits,
+                &query,
+                k as usize,
+                &mut finder.memo,
+                &mut finder.distances_sq,
+            );
+            if let Some(kth) = kth {
+                let radius = kth.sqrt();
+                finder.last_radius = radius;
+                query.r2 = kth;
+                query.kernel = PreparedKernel::new(query.kernel.kernel, radius);
+                return query;
+            }
+            if last {
+                finder.last_radius = radius;
+                break;
+            }
+            // As many photons as were found tell how much wider the ball has to be, on an even surface.
+            let found = finder.distances_sq.len().max(1) as f32;
+            reach *= (1.2 * k as f32 / found).sqrt().clamp(1.1, 4.0);
+        }
+        query
+    }
+
+    /// Sums the nearest of a part of a batch, at most 65,536 queries, on one thread; returns the photons tested.
+    pub(crate) fn gather_nearest_part(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        kernel: Kernel,
+        out: &mut [GatheredNearest],
+    ) -> u64 {
+        let mut finder = NearestFinder::new();
+        let mut one = |i: usize| {
+            let prepared = PreparedQuery::new(&queries[i], kernel);
+            let nearest = self.narrow(prepared, queries[i].radius, k, &mut finder);
+            let sums = (self.kernels.gather)(&self.blocks, &finder.scratch.hits, &nearest, &mut finder.memo);
+            let farthest = || finder.distances_sq.iter().fold(0f32, |farthest, d2| farthest.max(*d2));
+            let farthest_sq = match sums.count {
+                0 => 0.0,
+                count if count >= k => nearest.r2,
+                _ => farthest(),
+            };
+            out[i] = GatheredNearest { flux: sums.flux, count: sums.count, farthest_sq };
+        };
+        if self.are_coherent(queries) {
+            (0..queries.len()).for_each(&mut one);
+        } else {
+            self.sorted(queries).into_iter().for_each(&mut one);
+        }
+        finder.tested
+    }
+}
