@@ -22,6 +22,8 @@ const SKY_RAYS: u32 = 3;
 const CLEAR_SURFACES: u32 = 6;
 /// Photons sent out by the pilot at most.
 const PHOTONS: u32 = 50_000;
+/// As many tell how many are stored.
+const MEMORY_PHOTONS: u32 = 4000;
 /// Neighbours whose distance measures density.
 pub(crate) const NEIGHBORS: usize = 32;
 /// Photons at which the density of the caustic map is measured.
@@ -178,22 +180,29 @@ pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleR
     if radius > 0.7 * whole.radius || !(radius > 0.0) { whole } else { VisibleRegion { center, radius } }
 }
 
-/// What the photons of a pilot pass say about radii and memory, for `photons` photons a pass.
+/// What the photons of a pilot pass say about radii and memory, for `photons` photons a pass. Where the user gives the
+/// `radius` and no photons are aimed, only memory is asked about.
 pub(crate) fn photon_outlook(
     world: &World,
     lights: &Lights,
     points: &[VisiblePoint],
     pass: PhotonPass,
     photons: u32,
+    radius: Option<f32>,
     observer: &dyn Observer,
 ) -> Result<PhotonOutlook, Cancelled> {
-    let count = photons.min(PHOTONS);
+    let radius = radius.map(|radius| Radii { global: radius, caustic: radius });
+    let only_memory = radius.filter(|_| pass.keep == Keep::All);
+    let count = photons.min(if only_memory.is_some() { MEMORY_PHOTONS } else { PHOTONS });
     let pilot =
         PhotonPass { kind: StreamKind::Pilot, pass: 0, count, guide: None, together: None, profile_every: 0, ..pass };
     let (mut stored, counters) = pilot.run(world, lights, observer)?;
     let per_pass = |stored: u64| (stored as f64 * f64::from(photons) / f64::from(count.max(1))) as u64;
     let counted = counters.photons;
     let stored_plain = [per_pass(counted.stored - counted.stored_caustic), per_pass(counted.stored_caustic)];
+    if let Some(radii) = only_memory {
+        return Ok(PhotonOutlook { radii, stored: stored_plain, caustics: None });
+    }
     let global_search = search(std::mem::take(&mut stored.global));
     let scale = |target: f32| (target / NEIGHBORS as f32 * count as f32 / photons as f32).sqrt();
     let width = median(points.iter().map(|p| p.width)).unwrap_or(0.0);
@@ -207,7 +216,7 @@ pub(crate) fn photon_outlook(
     let global_search = global_search.as_deref();
     if let Some(plan) = caustic_plan::plan(world, lights, points, pilot, &stored, global_search, photons, observer)? {
         // Where a caustic is as smooth as the rest it needs no wider radius than that.
-        let radii = Radii { global, caustic: plan.radius.min(global) };
+        let radii = radius.unwrap_or(Radii { global, caustic: plan.radius.min(global) });
         let own = (f64::from(plan.stored) * f64::from(plan.count)) as u64;
         let stored = [stored_plain[0], stored_plain[1] + own];
         return Ok(PhotonOutlook { radii, stored, caustics: Some(plan) });
@@ -215,7 +224,8 @@ pub(crate) fn photon_outlook(
     let probes = spread(&stored.caustic);
     let caustic = typical_distance(&probes, search(stored.caustic).as_deref(), 0.5).map(|r| r * scale(CAUSTIC_TARGET));
     let caustic = caustic.unwrap_or(global).clamp((0.7 * width).min(global), global);
-    Ok(PhotonOutlook { radii: Radii { global, caustic }, stored: stored_plain, caustics: None })
+    let radii = radius.unwrap_or(Radii { global, caustic });
+    Ok(PhotonOutlook { radii, stored: stored_plain, caustics: None })
 }
 
 /// A search over pilot photons; none where they are few.

@@ -8,7 +8,7 @@ use crate::direct::DEFAULT_LEVELS;
 use crate::eye_pass::EyePass;
 use crate::film::{Aov, Film, FilmLayout};
 use crate::film_filter::FilterSampler;
-use crate::light::{LightGuide, Lights, shadow_rays};
+use crate::light::{LightGuide, Lights, SkyView, shadow_rays};
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
@@ -18,6 +18,7 @@ use crate::world::World;
 use photinus_num::StreamKind;
 use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError};
 use photinus_profile::queries::{Block, BlockKey, MapKind, Stage};
+use photinus_scene::Light;
 
 /// Shrinking of the radius, Knaus and Zwicker 2011, section 5: the area falls by (i + ALPHA) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
@@ -79,7 +80,13 @@ impl<'w> Renderer<'w> {
             _ => u32::MAX,
         });
         let points = pilot::visible_points(world, &camera, crop, settings.seed);
-        let view = pilot::sky_view(world, &points, settings.seed);
+        // Paths and shadow rays ask how much lamps cover; else only light from infinity needs the look.
+        let is_distant = |light: &Light| matches!(light, Light::Directional { .. } | Light::Environment(_));
+        let view = if settings.mode != Mode::Direct || world.lights.iter().any(is_distant) {
+            pilot::sky_view(world, &points, settings.seed)
+        } else {
+            SkyView::new()
+        };
         let lights = Lights::new(world, pilot::visible_region(world, &points), &view);
         // Only shadow rays choose by place, and the thesis's renderer sends none.
         let guide = match settings.mode {
@@ -114,13 +121,16 @@ impl<'w> Renderer<'w> {
         renderer.film = Film::new(pixels * renderer.layout.channels());
         if renderer.settings.mode != Mode::Path {
             let pass = renderer.photon_pass(0);
-            let PhotonOutlook { radii, stored, caustics } =
-                pilot::photon_outlook(world, &renderer.lights, &points, pass, photons, observer)?;
-            (renderer.stored, renderer.caustics) = (stored, caustics);
-            renderer.radii = match renderer.settings.radius {
-                Some(radius) => Radii { global: radius, caustic: radius },
-                None => radii,
-            };
+            PhotonOutlook { radii: renderer.radii, stored: renderer.stored, caustics: renderer.caustics } =
+                pilot::photon_outlook(
+                    world,
+                    &renderer.lights,
+                    &points,
+                    pass,
+                    photons,
+                    renderer.settings.radius,
+                    observer,
+                )?;
         }
         Ok(renderer)
     }

@@ -64,7 +64,7 @@ fn encode8(width: usize, height: usize, samples: &[u8], color: ExtendedColorType
         return Err(mismatch(format!("{} samples do not make {width} x {height} pixels", samples.len())));
     }
     let mut bytes = Vec::new();
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
+    PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
         .write_image(samples, columns, rows, color)
         .map_err(|error| mismatch(error.to_string()))?;
     Ok(bytes)

@@ -19,19 +19,20 @@ pub use world::world;
 
 use crate::{Bitmap, BitmapPixels};
 use photinus_geometry::Vec3;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Samples a picture at the middles of its pixels.
-fn draw(width: u32, height: u32, color: impl Fn(f32, f32) -> Vec3) -> Arc<Bitmap> {
-    let mut data = Vec::with_capacity((width * height) as usize);
-    for row in 0..height {
+fn draw(width: u32, height: u32, color: impl Fn(f32, f32) -> Vec3 + Sync) -> Arc<Bitmap> {
+    let mut data = vec![[0; 4]; (width * height) as usize];
+    data.par_chunks_exact_mut(width as usize).enumerate().for_each(|(row, pixels)| {
         let v = 1.0 - (row as f32 + 0.5) / height as f32;
-        for column in 0..width {
+        for (column, pixel) in pixels.iter_mut().enumerate() {
             let c = color((column as f32 + 0.5) / width as f32, v);
             let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-            data.push([byte(c.x), byte(c.y), byte(c.z), 255]);
+            *pixel = [byte(c.x), byte(c.y), byte(c.z), 255];
         }
-    }
+    });
     Arc::new(Bitmap { width, height, pixels: BitmapPixels::Rgba8 { data, srgb: true } })
 }
 
