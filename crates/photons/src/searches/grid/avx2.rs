@@ -68,7 +68,7 @@ fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2
 
 fn kth(
     blocks: &[Block],
-    hits: &[u32],
+    hits: &mut Vec<u32>,
     query: &PreparedQuery,
     k: usize,
     memo: &mut NormalMemo,
@@ -337,22 +337,24 @@ fn scan_blocks(
 #[target_feature(enable = "avx2,popcnt,bmi1")]
 fn kth_distance(
     blocks: &[Block],
-    hits: &[u32],
+    hits: &mut Vec<u32>,
     query: &PreparedQuery,
     k: usize,
     memo: &mut NormalMemo,
     distances_sq: &mut Vec<f32>,
 ) -> Option<f32> {
     let mut inclusion = Inclusion::new(query, memo);
-    for &block in hits {
-        let photons = &blocks[block as usize];
+    hits.retain(|block| {
+        let photons = &blocks[*block as usize];
         let [low, high] = [0, 1].map(|half| inclusion.test(photons, half));
         let mut lanes = (_mm256_movemask_ps(low.0) | _mm256_movemask_ps(high.0) << HALF) as u32;
+        let has_any = lanes != 0;
         let d2 = stored([low.1, high.1]);
         while lanes != 0 {
             distances_sq.push(d2[lanes.trailing_zeros() as usize]);
             lanes &= lanes - 1;
         }
-    }
+        has_any
+    });
     (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
 }

@@ -65,7 +65,7 @@ fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2
 
 fn kth(
     blocks: &[Block],
-    hits: &[u32],
+    hits: &mut Vec<u32>,
     query: &PreparedQuery,
     k: usize,
     memo: &mut NormalMemo,
@@ -343,7 +343,7 @@ fn scan_blocks(
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
 fn kth_distance(
     blocks: &[Block],
-    hits: &[u32],
+    hits: &mut Vec<u32>,
     query: &PreparedQuery,
     k: usize,
     memo: &mut NormalMemo,
@@ -351,7 +351,7 @@ fn kth_distance(
 ) -> Option<f32> {
     let mut inclusion = Inclusion::new(query, memo);
     distances_sq.reserve(hits.len() * LANES + LANES);
-    for block in hits {
+    hits.retain(|block| {
         let (found, d2) = inclusion.test(&blocks[*block as usize]);
         // SAFETY: there is room for sixteen a block, of which the first ones, as many as `found` has bits, are kept.
         unsafe {
@@ -359,6 +359,7 @@ fn kth_distance(
             _mm512_storeu_ps(end, _mm512_maskz_compress_ps(found, d2));
             distances_sq.set_len(distances_sq.len() + found.count_ones() as usize);
         }
-    }
+        found != 0
+    });
     (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
 }

@@ -40,8 +40,8 @@ pub(crate) type Select = fn(&[Block], &[u32], &PreparedQuery, &mut Vec<Selected>
 pub(crate) type Scan = fn(&[Block], &[[u32; LANES]], &[u32], Vec3, f32, &mut Candidates);
 
 /// Collects the squared distances of what a query finds in these blocks and returns the k-th least of them, `None` where
-/// they are fewer than k; k is at least 1.
-pub(crate) type Kth = fn(&[Block], &[u32], &PreparedQuery, usize, &mut NormalMemo, &mut Vec<f32>) -> Option<f32>;
+/// they are fewer than k; k is at least 1. Of the blocks only those with anything found are kept.
+pub(crate) type Kth = fn(&[Block], &mut Vec<u32>, &PreparedQuery, usize, &mut NormalMemo, &mut Vec<f32>) -> Option<f32>;
 
 /// Kernels for one width of vectors.
 #[derive(Clone, Copy, Debug)]

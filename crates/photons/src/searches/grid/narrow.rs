@@ -62,7 +62,7 @@ impl Grid {
             finder.distances_sq.clear();
             let kth = (self.kernels.kth)(
                 &self.blocks,
-                &finder.scratch.hits,
+                &mut finder.scratch.hits,
                 &query,
                 k as usize,
                 &mut finder.memo,

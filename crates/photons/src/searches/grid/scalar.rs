@@ -87,16 +87,19 @@ fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2
 
 fn kth(
     blocks: &[Block],
-    hits: &[u32],
+    hits: &mut Vec<u32>,
     query: &PreparedQuery,
     k: usize,
     _: &mut NormalMemo,
     distances_sq: &mut Vec<f32>,
 ) -> Option<f32> {
-    for block in hits.iter().map(|block| &blocks[*block as usize]) {
+    hits.retain(|block| {
+        let block = &blocks[*block as usize];
+        let before = distances_sq.len();
         let lanes = block.distances_sq(query.position).into_iter().zip(block.surface);
         let found = lanes.filter(|(d2, surface)| *d2 <= query.r2 && query.accepts(*surface));
         distances_sq.extend(found.map(|(d2, _)| d2));
-    }
+        distances_sq.len() > before
+    });
     (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
 }
