@@ -17,13 +17,14 @@ pub(crate) enum Environment {
     Image(Box<ImageEnvironment>),
 }
 
-/// An equirectangular picture, bilinear between pixel middles.
+/// An equirectangular picture, bilinear between pixels. As in Mitsuba 3 the first and the last row lie on the poles, and
+/// columns have their pixels' middles.
 pub(crate) struct ImageEnvironment {
     bitmap: Arc<Bitmap>,
     scale: f32,
     to_world: Mat3,
     to_local: Mat3,
-    /// For each bin, the cells between pixel middles that have their middle in it, and the choice among them by
+    /// For each bin, the cells between four pixels that have their middle in it, and the choice among them by
     /// brightest channel of the corners times the cell's solid angle.
     bins: Vec<(Vec<u32>, AliasTable)>,
     /// Probability of each cell within its bin.
@@ -31,7 +32,8 @@ pub(crate) struct ImageEnvironment {
     /// Light of each bin: mean channel times solid angle.
     powers: Vec<f64>,
     width: usize,
-    height: usize,
+    /// Rows of cells: one fewer than of pixels.
+    rows: usize,
     mean: Vec3,
 }
 
@@ -92,7 +94,7 @@ impl Environment {
     pub fn bytes(&self) -> usize {
         match self {
             Self::Constant(_) => 0,
-            Self::Image(image) => image.width * (image.height + 1) * (12 + 4 + 4),
+            Self::Image(image) => image.width * image.rows * (12 + 4 + 4),
         }
     }
 }
@@ -105,22 +107,22 @@ impl ImageEnvironment {
         let z = x.cross(y);
         let z = if z.dot(matrix.z_axis) < 0.0 { -z } else { z };
         let to_world = Mat3::from_cols(x, y, z);
-        let (width, height) = (bitmap.width as usize, bitmap.height as usize);
+        let (width, rows) = (bitmap.width as usize, (bitmap.height as usize).max(2) - 1);
         let mut image = Self {
             bitmap,
             scale,
             to_world,
             to_local: to_world.transpose(),
             bins: Vec::new(),
-            chances: vec![0.0; width * (height + 1)],
+            chances: vec![0.0; width * rows],
             powers: vec![0.0; SkyView::BINS],
             width,
-            height,
+            rows,
             mean: Vec3::ZERO,
         };
         let mut cells: Vec<Vec<u32>> = vec![Vec::new(); SkyView::BINS];
         let mut mean = [0.0f64; 3];
-        for row in 0..=height {
+        for row in 0..rows {
             let solid_angle = f64::from(image.row_solid_angle(row));
             for column in 0..width {
                 let color = image.cell_color(row, column);
@@ -170,18 +172,18 @@ impl ImageEnvironment {
         if color.is_finite() { color } else { Vec3::ZERO }
     }
 
-    /// Corners of cell (`row`, `column`): it lies between pixel rows `row - 1` and `row` (clamped) and between pixel
-    /// columns `column` and `column + 1` (wrapped).
+    /// Corners of cell (`row`, `column`): it lies between pixel rows `row` and `row + 1` (the same where there is but one)
+    /// and between pixel columns `column` and `column + 1` (wrapped).
     fn corners(&self, row: usize, column: usize) -> [Vec3; 4] {
-        let (top, bottom) = (row.max(1) - 1, row.min(self.height - 1));
+        let (top, bottom) = (row, (row + 1).min(self.bitmap.height as usize - 1));
         let right = (column + 1) % self.width;
         [self.pixel(top, column), self.pixel(top, right), self.pixel(bottom, column), self.pixel(bottom, right)]
     }
 
-    /// Latitudes (0 at the pole) that bound a row of cells; the first and the last are half as high.
+    /// Latitudes (0 at the upper pole) that bound a row of cells.
     fn row_bounds(&self, row: usize) -> [f32; 2] {
-        let h = self.height as f32;
-        [((row as f32 - 0.5) / h).max(0.0) * PI, ((row as f32 + 0.5) / h).min(1.0) * PI]
+        let rows = self.rows as f32;
+        [row as f32 / rows * PI, (row as f32 + 1.0) / rows * PI]
     }
 
     /// Solid angle of one cell of a row.
@@ -194,8 +196,8 @@ impl ImageEnvironment {
     fn cell(&self, u: f32, v: f32) -> (usize, usize, f32, f32) {
         let x = u * self.width as f32 - 0.5;
         let x = if x < 0.0 { x + self.width as f32 } else { x };
-        let y = v * self.height as f32 + 0.5;
-        let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(self.height));
+        let y = v * self.rows as f32;
+        let (column, row) = ((x as usize).min(self.width - 1), (y as usize).min(self.rows - 1));
         (row, column, (x - column as f32).clamp(0.0, 1.0), (y - row as f32).clamp(0.0, 1.0))
     }
 
@@ -255,6 +257,37 @@ mod tests {
         let bitmap = Arc::new(Bitmap { width, height, pixels: BitmapPixels::RgbaF32(data) });
         let to_world = Affine3A::from_rotation_y(0.7) * Affine3A::from_rotation_x(-0.4);
         Environment::new(&EnvironmentLight::Image { bitmap, scale: 2.0, to_world })
+    }
+
+    /// Rows have their latitudes from pole to pole, columns the middles of their pixels, as in Mitsuba 3.
+    #[test]
+    fn pixels_lie_where_mitsuba_puts_them() {
+        let grey = |v: f32| [v, v, v, 1.0];
+        let data = (0..3).flat_map(|row| (0..4).map(move |column| grey((10 * row + column) as f32))).collect();
+        let bitmap = Arc::new(Bitmap { width: 4, height: 3, pixels: BitmapPixels::RgbaF32(data) });
+        let to_world = Affine3A::IDENTITY;
+        let sky = Environment::new(&EnvironmentLight::Image { bitmap, scale: 1.0, to_world });
+        let looking = |u: f32, v: f32| {
+            let (phi, theta) = (u * TAU, v * PI);
+            let r = libm::sinf(theta);
+            sky.radiance(Vec3::new(r * libm::sinf(phi), libm::cosf(theta), -r * libm::cosf(phi))).x
+        };
+        for (u, v, expected) in [
+            (0.125, 0.5, 10.0),
+            (0.375, 0.5, 11.0),
+            (0.25, 0.5, 10.5),
+            (0.0, 0.5, 11.5),
+            (0.625, 0.001, 2.0),
+            (0.625, 0.25, 7.0),
+            (0.625, 0.75, 17.0),
+            (0.625, 0.999, 22.0),
+        ] {
+            let found = looking(u, v);
+            assert!((found - expected).abs() < 0.03, "{u} {v}: {found}, not {expected}");
+        }
+        let single = Arc::new(Bitmap { width: 1, height: 1, pixels: BitmapPixels::RgbaF32(vec![grey(3.0)]) });
+        let sky = Environment::new(&EnvironmentLight::Image { bitmap: single, scale: 1.0, to_world });
+        assert_eq!(sky.radiance(Vec3::Y).x, 3.0);
     }
 
     /// The estimator radiance / pdf has the mean radiance times 4 pi as its expectation, whatever the picture.

@@ -47,7 +47,8 @@ pub enum EnvironmentLight {
     /// An equirectangular picture, latitude down from the local +y pole.
     ///
     /// As Mitsuba reads it: a local direction d has u = atan2(d.x, -d.z) / 2 pi (wrapped to 0..1) and
-    /// v = acos(d.y) / pi, row 0 at v = 0.
+    /// v = acos(d.y) / pi. The first row of pixels lies at v = 0, the last at v = 1; the middle of column i at
+    /// u = (i + 1/2) / columns.
     Image {
         /// Radiance, linear.
         bitmap: Arc<Bitmap>,
