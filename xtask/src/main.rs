@@ -1,5 +1,7 @@
-//! House tasks, run as `cargo xtask TASK`: the whole check of a change, the floors of the crates, the house rules.
+//! House tasks, run as `cargo xtask TASK`: the whole check of a change, the floors of the crates, the house rules, the
+//! benchmarks against others.
 
+mod bench;
 mod ci;
 mod floors;
 mod metadata;
@@ -15,7 +17,10 @@ tasks:
   ci [--install]   format, lints, floors, tidy, tests, docs, examples and the README's command; --install is the
                    consent to install what is missing (system packages by apt, Rust components by rustup)
   floors           check that every crate uses lower floors only
-  tidy             check the house rules";
+  tidy             check the house rules
+  bench pictures [--quick] [--json] [--repeats N] [--only ENGINE,...]
+                   the equal-time table: pictures by all engines in the same processor time; installs the peers below
+                   target/ with pip; --quick is one repeat at 10 s, --repeats and --only make it smaller or larger";
 
 /// What a task says when it did not succeed: one message for the person who ran it.
 type Failure = String;
@@ -29,6 +34,13 @@ fn main() -> ExitCode {
         ["ci", "--install"] => return verdict(ci::run(&root, true)),
         ["floors"] => floors::run(&root).map(|report| println!("{report}")),
         ["tidy"] => tidy::run(&root).map(|report| println!("{report}")),
+        ["bench", words @ ..] => match bench::run(&root, words) {
+            Some(outcome) => outcome,
+            None => {
+                eprintln!("{USAGE}");
+                return ExitCode::from(2);
+            }
+        },
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             return ExitCode::SUCCESS;

@@ -1,0 +1,109 @@
+"""Renders a scene with Radiance: mkpmap makes a global and a caustic photon map, rpict gathers through one bounce."""
+
+import os
+import subprocess
+import tempfile
+
+import budget
+
+# One path a pixel; one ambient bounce, whose ends look the photons up; no ambient cache, no approximations of shadows.
+GATHER = "-pa 1 -pj 1 -ps 1 -ab 1 -aa 0 -ds 0.15 -dj 1 -dt 0 -dc 1 -lr -16 -lw 1e-4".split()
+
+# Photons an estimate takes.
+BANDWIDTH = "50"
+
+
+def tool(name, *arguments, **streams):
+    import pyradiance
+
+    folder = os.path.dirname(pyradiance.__file__)
+    environment = dict(os.environ, RAYPATH=os.path.join(folder, "lib"))
+    command = [os.path.join(folder, "bin", name), *arguments]
+    subprocess.run(command, check=True, env=environment, stderr=subprocess.PIPE, **streams)
+
+
+def photons(seconds):
+    """Global and caustic photons: 5,000 of each a second of the budget, the caustic half of that from a minute on."""
+    count = int(5000 * seconds)
+    return count, count if seconds < 30 else count // 2
+
+
+def make_maps(scene, folder, options):
+    octree, surfaces, caustic = (os.path.join(folder, name) for name in ("scene.oct", "g.pm", "c.pm"))
+    with open(octree, "wb") as file:
+        tool("oconv", os.path.join(scene, "scene.rad"), stdout=file)
+    many, few = photons(options.budget)
+    seed = str(1000 + options.seed)
+    tool("mkpmap", "-apg", surfaces, str(many), "-apc", caustic, str(few), "-apr", seed, "-t", "0", "-fo+", octree)
+    return octree, ["-ap", surfaces, BANDWIDTH, "-ap", caustic, BANDWIDTH]
+
+
+def gather(scene, octree, maps, divisions, out, size=()):
+    with open(os.path.join(scene, "view.txt")) as file:
+        view = file.read().split()
+    with open(out, "wb") as file:
+        tool("rpict", "-t", "0", *view, *size, *GATHER, "-ad", str(divisions), *maps, octree, stdout=file)
+
+
+def main():
+    options = budget.arguments(["photon-map"])
+    with tempfile.TemporaryDirectory(dir=os.path.dirname(os.path.abspath(options.out))) as folder:
+        hdr = os.path.join(folder, "out.hdr")
+        if options.calibrate:
+            calibrate(options, folder, hdr)
+            return
+        costs = read(options.costs)
+        octree, maps = make_maps(options.scene, folder, options)
+        divisions = budget.affordable(costs, options.budget - budget.spent())
+        gather(options.scene, octree, maps, divisions, hdr)
+        work = f"{photons(options.budget)[0]} + {photons(options.budget)[1]} photons, {divisions} gather rays a pixel"
+        budget.report(version=version(), work=work, measured=budget.spent())
+        convert(hdr, options.out, folder)
+
+
+def read(path):
+    import json
+
+    with open(path) as file:
+        return json.load(file)
+
+
+def calibrate(options, folder, hdr):
+    """Costs of gather rays, on a sixteenth of the pixels."""
+    import json
+
+    octree, maps = make_maps(options.scene, folder, options)
+    seconds = []
+    for divisions in (2, 8):
+        before = budget.spent()
+        gather(options.scene, octree, maps, divisions, hdr, ["-x", "128", "-y", "128"])
+        seconds.append(budget.spent() - before)
+    costs = budget.linear(2, seconds[0], 8, seconds[1])
+    with open(options.scene + "/scene.json") as file:
+        camera = json.load(file)["camera"]
+    scale = camera["width"] * camera["height"] / 128**2
+    with open(options.costs, "w") as file:
+        json.dump({key: scale * value for key, value in costs.items()}, file)
+
+
+def version():
+    import importlib.metadata
+
+    return importlib.metadata.version("pyradiance")
+
+
+def convert(hdr, out, folder):
+    """Radiance's RGBE picture as EXR."""
+    import numpy as np
+
+    import pixels
+
+    raw = os.path.join(folder, "out.raw")
+    with open(hdr, "rb") as source, open(raw, "wb") as target:
+        tool("pvalue", "-df", "-h", "-o", "-H", stdin=source, stdout=target)
+    values = np.fromfile(raw, dtype=np.float32)
+    side = int(round((values.size / 3) ** 0.5))
+    pixels.write_exr(out, values.reshape(side, side, 3))
+
+
+main()
