@@ -17,11 +17,11 @@ def main():
     build(bpy, scene)
     if options.calibrate:
         seconds = []
-        for samples in (2, 10):
+        for samples in (2, 12):
             before = budget.spent()
             render(bpy, samples, options)
             seconds.append(budget.spent() - before)
-        costs = budget.linear(2, seconds[0], 10, seconds[1])
+        costs = budget.linear(2, seconds[0], 12, seconds[1])
         with open(options.costs, "w") as file:
             json.dump(costs, file)
         return

@@ -17,6 +17,13 @@ pub struct Engine {
     pub left_out: Option<(u32, &'static str)>,
 }
 
+impl Engine {
+    /// Why it does not run at a budget of so many seconds, if it does not.
+    pub fn left_out_of(&self, seconds: u32) -> Option<&'static str> {
+        self.left_out.filter(|(budget, _)| *budget == seconds).map(|(_, why)| why)
+    }
+}
+
 /// Where an engine comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Package {

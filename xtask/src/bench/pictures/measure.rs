@@ -31,6 +31,18 @@ pub struct Outcome {
     pub work: String,
 }
 
+impl Outcome {
+    /// One line for somebody who watches.
+    pub fn line(&self) -> String {
+        let words = |judged: &Judged| {
+            let [counted, caustic] = judged.errors;
+            format!("{:.1} s, trimmed {counted:.5}, caustic {caustic:.5}", judged.cpu_seconds)
+        };
+        let denoised = self.denoised.as_ref().map_or(String::new(), |judged| format!("; denoised {}", words(judged)));
+        format!("{} ({}){denoised}", words(&self.plain), self.work)
+    }
+}
+
 /// What a driver says at its end.
 #[derive(Deserialize)]
 struct Said {
@@ -90,11 +102,14 @@ impl Bench {
         }
     }
 
-    /// Renders each lamp small, and compares brightness and place with the reference. An error says how it disagrees.
-    pub fn agrees(&self, engine: &Engine) -> Result<Option<String>, Failure> {
+    /// Renders the lamps of an engine's settings small, and compares brightness and place with the reference. An error
+    /// says how it disagrees.
+    pub fn agrees(&self, engine: &Engine, settings: &[Setting]) -> Result<Option<String>, Failure> {
         let Some(environment) = &self.environment else { return Ok(None) };
+        let wanted =
+            |lamp: &&Lamp| settings.iter().any(|s| s.lamp.name == lamp.name && engine.left_out_of(s.seconds).is_none());
         let mut notes = Vec::new();
-        for lamp in LAMPS {
+        for lamp in LAMPS.iter().filter(wanted) {
             eprintln!("agreement of {} on {}", engine.name, lamp.name);
             let folder = self.folder("trials", lamp.name, engine.name)?;
             let picture = folder.join("small.exr");
@@ -117,7 +132,7 @@ impl Bench {
             }
             notes.push(words);
         }
-        Ok(Some(format!("agreement of {}: {}", engine.name, notes.join("; "))))
+        Ok((!notes.is_empty()).then(|| format!("agreement of {}: {}", engine.name, notes.join("; "))))
     }
 
     /// Renders, denoises and judges.

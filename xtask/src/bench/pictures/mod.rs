@@ -39,6 +39,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     };
     let below = root.join("target/peers/pictures");
     let mut bench = Bench::new(photinus, environment, below, options.quick);
+    let settings = setting::settings(options.quick);
     let mut notes = Vec::new();
     notes.extend(no_peers.as_ref().map(|reason| format!("no peers: {reason}")));
     for lamp in LAMPS {
@@ -54,35 +55,40 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     notes.extend(no_denoiser.iter().map(|reason| format!("nothing denoised: {reason}")));
     for (engine, reason) in engines.iter().zip(&mut excluded) {
         if reason.is_none() {
-            match bench.agrees(engine) {
+            match bench.agrees(engine, &settings) {
                 Ok(note) => notes.extend(note),
                 Err(why) => *reason = Some(why),
             }
         }
     }
     let mut rows = Vec::new();
-    for setting in setting::settings(options.quick) {
+    for setting in &settings {
         let repeats = options.repeats.unwrap_or(setting.repeats);
         let mut results: Vec<Result<Vec<Outcome>, Failure>> = Vec::new();
         for (engine, reason) in engines.iter().zip(&excluded) {
-            let left_out = engine.left_out.filter(|(seconds, _)| *seconds == setting.seconds);
-            results.push(match (reason, left_out) {
+            results.push(match (reason, engine.left_out_of(setting.seconds)) {
                 (Some(reason), _) => Err(reason.clone()),
-                (None, Some((_, why))) => Err(why.to_owned()),
+                (None, Some(why)) => Err(why.to_owned()),
                 (None, None) => Ok(Vec::new()),
             });
         }
         for repeat in 0..repeats {
             for (engine, result) in engines.iter().zip(&mut results) {
                 let Ok(outcomes) = result else { continue };
-                eprintln!("{} {}, {} of {repeats}", setting.name(), engine.name, repeat + 1);
-                match bench.measure(engine, &setting, repeat, no_denoiser.is_none()) {
-                    Ok(outcome) => outcomes.push(outcome),
-                    Err(reason) => *result = Err(reason),
+                let which = format!("{} {}, {} of {repeats}", setting.name(), engine.name, repeat + 1);
+                match bench.measure(engine, setting, repeat, no_denoiser.is_none()) {
+                    Ok(outcome) => {
+                        eprintln!("{which}: {}", outcome.line());
+                        outcomes.push(outcome);
+                    }
+                    Err(reason) => {
+                        eprintln!("{which}: {reason}");
+                        *result = Err(reason);
+                    }
                 }
             }
         }
-        rows.extend(rows_of(&setting, &engines, &results, no_denoiser.is_none()));
+        rows.extend(rows_of(setting, &engines, &results, no_denoiser.is_none()));
     }
     fill_ratios_of_errors(&mut rows);
     let commit = said("git", &["-C", &root.display().to_string(), "rev-parse", "--short", "HEAD"]);
