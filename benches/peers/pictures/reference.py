@@ -18,7 +18,7 @@ CAUSTIC_CONTRAST = 5.0
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--xml", help="the scene for Mitsuba; left out, the picture is there and only masks are made")
-    parser.add_argument("--seconds", type=float, help="processor seconds, half for each method")
+    parser.add_argument("--seconds", type=float, help="processor seconds, half for each method where there are two")
     parser.add_argument("--objects", required=True, help="EXR with the channel object-id.id")
     parser.add_argument("--floor", type=int, required=True, help="number of the floor in it")
     parser.add_argument("--lamp", type=int, required=True, help="number of the lamp")
@@ -61,10 +61,11 @@ def combined(options, seen_by_chance):
 
     mitsuba.set_variant("llvm_ad_rgb")
     scene = mitsuba.load_file(options.xml)
-    light, light_variance, light_samples = averaged(mitsuba, scene, "ptracer", options.seconds / 2)
+    seconds = options.seconds if options.lights_only else options.seconds / 2
+    light, light_variance, light_samples = averaged(mitsuba, scene, "ptracer", seconds)
     if options.lights_only:
         return light, {"light_samples": light_samples}
-    path, path_variance, path_samples = averaged(mitsuba, scene, "path", options.seconds / 2)
+    path, path_variance, path_samples = averaged(mitsuba, scene, "path", seconds)
     # Smooth variances: a lone firefly's own estimate says nothing of the pixels around it.
     weights = [1.0 / (1e-12 + smooth(v.mean(axis=-1)))[..., None] for v in (path_variance, light_variance)]
     weights[1] = np.where(grown(seen_by_chance)[..., None], 0.0, weights[1])

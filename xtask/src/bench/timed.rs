@@ -13,7 +13,8 @@ pub struct Outcome {
 }
 
 /// The shell keeps the times of its children (POSIX `times`): the second line is theirs, user and system.
-const SCRIPT: &str = r#"log=$1; times=$2; shift 2; timeout "$@" 2> "$log"; code=$?; times > "$times"; exit $code"#;
+const SCRIPT: &str =
+    r#"log=$1; times=$2; shift 2; timeout --foreground "$@" 2> "$log"; code=$?; times > "$times"; exit $code"#;
 
 /// Runs `arguments` (program first) with further environment variables. Standard error goes into a file in `folder`.
 /// What runs longer than `limit_seconds` is ended. An error is one line that ends with the program's own last line.

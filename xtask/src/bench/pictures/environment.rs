@@ -59,6 +59,7 @@ impl Environment {
         match package {
             Package::Ours => Ok(()),
             Package::Python(name) => self.install(name),
+            Package::Unfit(why) => Err(why.to_owned()),
         }
     }
 

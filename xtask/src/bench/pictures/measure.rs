@@ -97,6 +97,7 @@ impl Bench {
     pub fn provide(&self, package: Package) -> Result<(), Failure> {
         match (&self.environment, package) {
             (_, Package::Ours) => Ok(()),
+            (_, Package::Unfit(why)) => Err(why.to_owned()),
             (Some(environment), package) => environment.provide(package),
             (None, _) => Err("not installed: no environment for the peers".into()),
         }
