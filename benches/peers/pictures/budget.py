@@ -25,8 +25,8 @@ def spent():
 
 
 def affordable(costs, budget, least=1):
-    """Whole samples that fit into the budget where a picture takes costs = {fixed, each} seconds."""
-    return max(least, int((budget - costs["fixed"]) / costs["each"]))
+    """Whole samples that come nearest to the budget where a picture takes costs = {fixed, each} seconds."""
+    return max(least, round((budget - costs["fixed"]) / costs["each"]))
 
 
 def linear(few, few_seconds, many, many_seconds):

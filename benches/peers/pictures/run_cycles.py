@@ -29,7 +29,7 @@ def main():
         costs = json.load(file)
     samples = budget.affordable(costs, options.budget - budget.spent())
     render(bpy, samples, options)
-    budget.report(version=bpy.app.version_string, work=f"{samples} samples a pixel")
+    budget.report(work=f"{samples} samples a pixel")
 
 
 def render(bpy, samples, options):
@@ -63,7 +63,7 @@ def build(bpy, description):
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.max_bounces = 32
     for kind in ("diffuse", "glossy", "transmission", "transparent_max"):
-        setattr(cycles, "transparent_max_bounces" if kind == "transparent_max" else f"{kind}_bounces", 32)
+        setattr(cycles, f"{kind}_bounces", 32)
     cycles.min_light_bounces = 8
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 1.0

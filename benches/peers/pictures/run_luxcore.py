@@ -108,7 +108,7 @@ def main():
     subprocess.run([sys.executable, os.path.join(HERE, "raise_row.py"), out], check=True)
     pixels = camera["width"] * camera["height"]
     work = f"{samples / pixels:.1f} samples a pixel"
-    budget.report(version=pyluxcore.Version(), work=work, measured=measured)
+    budget.report(work=work, measured=measured)
     # Its threads may still log while the interpreter goes down, which ends in an abort.
     sys.stdout.flush()
     os._exit(0)

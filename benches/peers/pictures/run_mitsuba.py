@@ -47,7 +47,7 @@ def main():
         done += samples
         passes += 1
     pixels.write_exr(options.out, total / done)
-    budget.report(version=mitsuba.__version__, work=f"{done} samples a pixel")
+    budget.report(work=f"{done} samples a pixel")
 
 
 main()

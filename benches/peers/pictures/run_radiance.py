@@ -1,5 +1,6 @@
 """Renders a scene with Radiance: mkpmap makes a global and a caustic photon map, rpict gathers through one bounce."""
 
+import json
 import os
 import subprocess
 import tempfile
@@ -52,44 +53,31 @@ def main():
         if options.calibrate:
             calibrate(options, folder, hdr)
             return
-        costs = read(options.costs)
+        with open(options.costs) as file:
+            costs = json.load(file)
         octree, maps = make_maps(options.scene, folder, options)
         divisions = budget.affordable(costs, options.budget - budget.spent())
         gather(options.scene, octree, maps, divisions, hdr)
-        work = f"{photons(options.budget)[0]} + {photons(options.budget)[1]} photons, {divisions} gather rays a pixel"
-        budget.report(version=version(), work=work, measured=budget.spent())
+        measured = budget.spent()
+        many, few = photons(options.budget)
         convert(hdr, options.out, folder)
-
-
-def read(path):
-    import json
-
-    with open(path) as file:
-        return json.load(file)
+        budget.report(work=f"{many} + {few} photons, {divisions} gather rays a pixel", measured=measured)
 
 
 def calibrate(options, folder, hdr):
-    """Costs of gather rays, on a sixteenth of the pixels."""
-    import json
-
+    """Costs of gather rays a pixel, on a picture of 256 x 256 pixels."""
     octree, maps = make_maps(options.scene, folder, options)
     seconds = []
-    for divisions in (2, 8):
+    for divisions in (2, 10):
         before = budget.spent()
-        gather(options.scene, octree, maps, divisions, hdr, ["-x", "128", "-y", "128"])
+        gather(options.scene, octree, maps, divisions, hdr, ["-x", "256", "-y", "256"])
         seconds.append(budget.spent() - before)
-    costs = budget.linear(2, seconds[0], 8, seconds[1])
-    with open(options.scene + "/scene.json") as file:
+    costs = budget.linear(2, seconds[0], 10, seconds[1])
+    with open(os.path.join(options.scene, "scene.json")) as file:
         camera = json.load(file)["camera"]
-    scale = camera["width"] * camera["height"] / 128**2
+    scale = camera["width"] * camera["height"] / 256**2
     with open(options.costs, "w") as file:
         json.dump({key: scale * value for key, value in costs.items()}, file)
-
-
-def version():
-    import importlib.metadata
-
-    return importlib.metadata.version("pyradiance")
 
 
 def convert(hdr, out, folder):

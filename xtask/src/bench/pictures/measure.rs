@@ -1,7 +1,7 @@
 //! Runs engines: the small picture that shows agreement, the timed picture, its denoised twin, and their errors.
 
-use super::engines::{Engine, Package};
-use super::environment::Environment;
+use super::engines::{ENGINES, Engine, Package};
+use super::environment::{DENOISER, Environment};
 use super::references::{self, Reference};
 use super::setting::{LAMPS, Lamp, Prepared, SIZE, Setting, TRIAL_SIZE, prepare};
 use crate::Failure;
@@ -72,7 +72,8 @@ pub struct Bench {
     below: PathBuf,
     quick: bool,
     scenes: BTreeMap<(&'static str, u32), Prepared>,
-    references: BTreeMap<&'static str, Reference>,
+    /// By lamp; in the place of one that could not be had, why.
+    references: BTreeMap<&'static str, Result<Reference, Failure>>,
 }
 
 impl Bench {
@@ -81,16 +82,33 @@ impl Bench {
         Self { photinus, environment, below, quick, scenes: BTreeMap::new(), references: BTreeMap::new() }
     }
 
-    /// Writes a lamp's scene for everyone and provides its reference; says in a line where that comes from.
+    /// Writes a lamp's scene for everyone and provides its reference; says in a line where that comes from, or why there is
+    /// none.
     pub fn prepare(&mut self, lamp: &'static Lamp) -> Result<String, Failure> {
         for size in [SIZE, TRIAL_SIZE] {
             self.scenes.insert((lamp.name, size), prepare(&self.photinus, lamp, size, &self.below)?);
         }
         let scene = &self.scenes[&(lamp.name, SIZE)];
-        let reference = references::provide(lamp, scene, &self.photinus, self.environment.as_ref(), self.quick)?;
-        let note = format!("reference of {}: {}", lamp.name, reference.source);
+        let reference = references::provide(lamp, scene, &self.photinus, self.environment.as_ref(), self.quick);
+        let words = reference.as_ref().map_or_else(|why| format!("none: {why}"), |made| made.source.clone());
+        let note = format!("reference of {}: {words}", lamp.name);
         self.references.insert(lamp.name, reference);
         Ok(note)
+    }
+
+    /// The peers' packages with their versions.
+    pub fn pins(&self) -> String {
+        let Some(environment) = &self.environment else { return "none".into() };
+        let packages = ENGINES.iter().map(|engine| engine.package).chain([DENOISER]);
+        let mut names: Vec<&str> =
+            packages.filter_map(|p| if let Package::Python(name) = p { Some(name) } else { None }).collect();
+        names.dedup();
+        let pinned = names.iter().map(|name| format!("{name} {}", environment.pinned(name).unwrap_or_default()));
+        pinned.collect::<Vec<_>>().join(", ")
+    }
+
+    fn reference(&self, lamp: &Lamp) -> Result<&Reference, Failure> {
+        self.references[lamp.name].as_ref().map_err(|why| format!("no reference: {why}"))
     }
 
     /// Whether a package is there, installed if need be.
@@ -110,12 +128,12 @@ impl Bench {
         let wanted =
             |lamp: &&Lamp| settings.iter().any(|s| s.lamp.name == lamp.name && engine.left_out_of(s.seconds).is_none());
         let mut notes = Vec::new();
-        for lamp in LAMPS.iter().filter(wanted) {
+        for lamp in LAMPS.iter().filter(wanted).filter(|lamp| self.reference(lamp).is_ok()) {
             eprintln!("agreement of {} on {}", engine.name, lamp.name);
             let folder = self.folder("trials", lamp.name, engine.name)?;
             let picture = folder.join("small.exr");
             self.render(engine, lamp, TRIAL_SIZE, engine.trial_seconds, 0, &picture, &folder)?;
-            let reference = &self.references[lamp.name];
+            let reference = self.reference(lamp)?;
             let mut words = environment.driver("agree.py");
             for (name, path) in
                 [("picture", &picture), ("reference", &reference.picture), ("counted", &reference.counted)]
@@ -144,6 +162,7 @@ impl Bench {
         repeat: usize,
         denoise: bool,
     ) -> Result<Outcome, Failure> {
+        self.reference(setting.lamp)?;
         let folder = self.folder("pictures", &setting.name(), engine.name)?;
         let picture = folder.join(format!("{repeat}.exr"));
         let (work, cpu_seconds) =
@@ -230,7 +249,7 @@ impl Bench {
 
     /// The two errors of a picture of full size.
     fn errors(&self, lamp: &Lamp, picture: &Path, folder: &Path) -> Result<[f64; 2], Failure> {
-        let reference = &self.references[lamp.name];
+        let reference = self.reference(lamp)?;
         let compare = |mask: &Path| -> Result<Compared, Failure> {
             let mut words: Vec<String> = vec![self.photinus.display().to_string(), "compare".into(), "--json".into()];
             words.extend([picture, &reference.picture].map(|path| path.display().to_string()));

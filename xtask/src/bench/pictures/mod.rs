@@ -33,6 +33,8 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     }
     let machine = Machine::here();
     let photinus = build(root)?;
+    let commit = said("git", &["-C", &root.display().to_string(), "describe", "--always", "--dirty"]);
+    let version = format!("photinus {} ({commit})", env!("CARGO_PKG_VERSION"));
     let (environment, no_peers) = match Environment::make(root) {
         Ok(environment) => (Some(environment), None),
         Err(reason) => (None, Some(reason)),
@@ -45,6 +47,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     for lamp in LAMPS {
         notes.push(bench.prepare(lamp)?);
     }
+    notes.push(format!("peers: {}", bench.pins()));
     let chosen = |engine: &&Engine| {
         options.only.is_empty() || engine.name == OURS || options.only.iter().any(|name| name == engine.name)
     };
@@ -91,8 +94,6 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         rows.extend(rows_of(setting, &engines, &results, no_denoiser.is_none()));
     }
     fill_ratios_of_errors(&mut rows);
-    let commit = said("git", &["-C", &root.display().to_string(), "rev-parse", "--short", "HEAD"]);
-    let version = format!("photinus {} ({commit})", env!("CARGO_PKG_VERSION"));
     let report = Report { bench: "pictures", version, machine, notes, rows };
     println!("{}", if options.json { report.json() } else { report.tables() });
     Ok(())

@@ -41,15 +41,19 @@ pub fn provide(
     environment: Option<&Environment>,
     quick: bool,
 ) -> Result<Reference, Failure> {
-    if let Some(scenes) = std::env::var_os("PHOTINUS_SCENES") {
-        let folder = Path::new(&scenes).join("caustics/two-spheres");
-        let source = "caustics/two-spheres below PHOTINUS_SCENES".to_owned();
-        let given = Reference::in_folder(&folder, lamp.name, source);
-        return if given.is_whole() { Ok(given) } else { Err(format!("{} is not whole", folder.display())) };
+    let scenes = std::env::var_os("PHOTINUS_SCENES");
+    if let Some(given) = scenes.and_then(|scenes| given(Path::new(&scenes), lamp)) {
+        return Ok(given);
     }
-    let environment =
-        environment.ok_or("without PHOTINUS_SCENES a reference is made, which needs the peers' Python")?;
+    let environment = environment.ok_or("none is given, and to make one takes the peers' Python")?;
     make(lamp, scene, photinus, environment, SECONDS[usize::from(!quick)])
+}
+
+/// The reference beside the real scenes, if it is there with both its masks.
+fn given(scenes: &Path, lamp: &Lamp) -> Option<Reference> {
+    let source = "caustics/two-spheres below PHOTINUS_SCENES".to_owned();
+    let given = Reference::in_folder(&scenes.join("caustics/two-spheres"), lamp.name, source);
+    given.is_whole().then_some(given)
 }
 
 /// Makes a reference, or finds the one that was made with as much time.
@@ -60,9 +64,10 @@ fn make(
     environment: &Environment,
     seconds: u32,
 ) -> Result<Reference, Failure> {
-    let folder = environment.folder().join(format!("references/{seconds}s"));
-    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mitsuba = environment.provide(Package::Python("mitsuba"));
+    let by = if mitsuba.is_ok() { "mitsuba" } else { "photinus" };
+    let folder = environment.folder().join(format!("references/{by}-{seconds}s"));
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let source = match &mitsuba {
         Ok(()) if lamp.by_light_alone => format!("made here by Mitsuba's light tracing, {seconds} s"),
         Ok(()) => format!("made here by Mitsuba's path and light tracing, {seconds} s"),
@@ -112,4 +117,23 @@ fn make(
     // Renamed at the end, so that an interrupted bench leaves no half of a reference.
     std::fs::rename(&partial, &made.picture).map_err(|e| format!("{}: {e}", made.picture.display()))?;
     if made.is_whole() { Ok(made) } else { Err(format!("no whole reference in {}", folder.display())) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::pictures::setting::LAMPS;
+
+    #[test]
+    fn a_given_reference_counts_only_with_both_masks() {
+        let scenes = tempfile::tempdir().unwrap();
+        let folder = scenes.path().join("caustics/two-spheres");
+        std::fs::create_dir_all(&folder).unwrap();
+        for name in ["large-lamp.exr", "large-lamp.counted.png", "large-lamp.caustic.png"] {
+            assert!(given(scenes.path(), &LAMPS[0]).is_none(), "before {name}");
+            std::fs::write(folder.join(name), "").unwrap();
+        }
+        assert_eq!(given(scenes.path(), &LAMPS[0]).unwrap().picture, folder.join("large-lamp.exr"));
+        assert!(given(scenes.path(), &LAMPS[1]).is_none());
+    }
 }
