@@ -43,7 +43,10 @@ impl Environment {
                 quiet(Command::new(python).args(["-c", check]))
             });
             let python = python.ok_or("no Python 3.11 on the path, for which the peers are pinned")?;
-            if !quiet(Command::new(python).args(["-m", "venv"]).arg(here.folder.join("env"))) {
+            let place = here.folder.join("env");
+            if !quiet(Command::new(python).args(["-m", "venv"]).arg(&place)) {
+                // Half an environment would pass for a whole one the next time.
+                std::fs::remove_dir_all(&place).ok();
                 return Err(format!("`{python} -m venv` failed (Debian: install python3-venv)"));
             }
         }
