@@ -1,6 +1,7 @@
 """Renders a scene with Radiance: mkpmap makes a global and a caustic photon map, rpict gathers through one bounce."""
 
 import json
+import math
 import os
 import subprocess
 import tempfile
@@ -12,6 +13,9 @@ GATHER = "-pa 1 -pj 1 -ps 1 -ab 1 -aa 0 -ds 0.15 -dj 1 -dt 0 -dc 1 -lr -16 -lw 1
 
 # Photons an estimate takes.
 BANDWIDTH = "50"
+
+# The picture is made in bands, so that the rays of the later ones can follow what the first ones cost.
+BANDS = 8
 
 
 def tool(name, *arguments, **streams):
@@ -39,38 +43,55 @@ def make_maps(scene, folder, options):
     return octree, ["-ap", surfaces, BANDWIDTH, "-ap", caustic, BANDWIDTH]
 
 
-def gather(scene, octree, maps, divisions, out, size=()):
+def gather(scene, octree, maps, divisions, out, size=None, band=0, bands=1):
+    """Renders one of some bands of rows, from the top, with so many gather rays a pixel."""
+    with open(os.path.join(scene, "scene.json")) as file:
+        camera = json.load(file)["camera"]
     with open(os.path.join(scene, "view.txt")) as file:
         view = file.read().split()
+    width, height = size or (camera["width"], camera["height"])
+    opening = math.radians(camera["fov_degrees"])
+    narrow = math.degrees(2.0 * math.atan(math.tan(opening / 2.0) / bands))
+    # A view may be lifted by its own heights; of repeated options the last one counts.
+    view += ["-vv", str(narrow), "-vl", str((bands - 1) / 2 - band), "-x", str(width), "-y", str(height // bands)]
     with open(out, "wb") as file:
-        tool("rpict", "-t", "0", *view, *size, *GATHER, "-ad", str(divisions), *maps, octree, stdout=file)
+        tool("rpict", "-t", "0", *view, *GATHER, "-ad", str(divisions), *maps, octree, stdout=file)
 
 
 def main():
     options = budget.arguments(["photon-map"])
     with tempfile.TemporaryDirectory(dir=os.path.dirname(os.path.abspath(options.out))) as folder:
-        hdr = os.path.join(folder, "out.hdr")
         if options.calibrate:
-            calibrate(options, folder, hdr)
+            calibrate(options, folder)
             return
         with open(options.costs) as file:
             costs = json.load(file)
         octree, maps = make_maps(options.scene, folder, options)
-        divisions = budget.affordable(costs, options.budget - budget.spent())
-        gather(options.scene, octree, maps, divisions, hdr)
+        files, divisions = [], []
+        for band in range(BANDS):
+            # What is left is shared evenly; what bands cost turns out on the way.
+            share = (options.budget - budget.spent()) / (BANDS - band)
+            divisions.append(budget.affordable(costs, share * BANDS))
+            files.append(os.path.join(folder, f"{band}.hdr"))
+            before = budget.spent()
+            gather(options.scene, octree, maps, divisions[-1], files[-1], band=band, bands=BANDS)
+            expected = (costs["fixed"] + divisions[-1] * costs["each"]) / BANDS
+            ratio = (budget.spent() - before) / expected
+            costs = {key: value * ratio for key, value in costs.items()}
         measured = budget.spent()
+        join(files, options.out, folder)
         many, few = photons(options.budget)
-        convert(hdr, options.out, folder)
-        budget.report(work=f"{many} + {few} photons, {divisions} gather rays a pixel", measured=measured)
+        rays = f"{min(divisions)} to {max(divisions)} gather rays a pixel"
+        budget.report(work=f"{many} + {few} photons, {rays}", measured=measured)
 
 
-def calibrate(options, folder, hdr):
+def calibrate(options, folder):
     """Costs of gather rays a pixel, on a picture of 256 x 256 pixels."""
     octree, maps = make_maps(options.scene, folder, options)
     seconds = []
     for divisions in (2, 10):
         before = budget.spent()
-        gather(options.scene, octree, maps, divisions, hdr, ["-x", "256", "-y", "256"])
+        gather(options.scene, octree, maps, divisions, os.path.join(folder, "out.hdr"), size=(256, 256))
         seconds.append(budget.spent() - before)
     costs = budget.linear(2, seconds[0], 10, seconds[1])
     with open(os.path.join(options.scene, "scene.json")) as file:
@@ -80,17 +101,20 @@ def calibrate(options, folder, hdr):
         json.dump({key: scale * value for key, value in costs.items()}, file)
 
 
-def convert(hdr, out, folder):
-    """Radiance's RGBE picture as EXR."""
+def join(files, out, folder):
+    """Bands in Radiance's RGBE as one EXR."""
     import numpy as np
 
     import pixels
 
-    raw = os.path.join(folder, "out.raw")
-    with open(hdr, "rb") as source, open(raw, "wb") as target:
-        tool("pvalue", "-df", "-h", "-o", "-H", stdin=source, stdout=target)
-    values = np.fromfile(raw, dtype=np.float32)
-    side = int(round((values.size / 3) ** 0.5))
+    bands = []
+    for hdr in files:
+        raw = os.path.join(folder, "out.raw")
+        with open(hdr, "rb") as source, open(raw, "wb") as target:
+            tool("pvalue", "-df", "-h", "-o", "-H", stdin=source, stdout=target)
+        bands.append(np.fromfile(raw, dtype=np.float32))
+    values = np.concatenate(bands)
+    side = round((values.size / 3) ** 0.5)
     pixels.write_exr(out, values.reshape(side, side, 3))
 
 
