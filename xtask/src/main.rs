@@ -1,9 +1,10 @@
-//! House tasks, run as `cargo xtask TASK`: the whole check of a change, the floors of the crates, the house rules, the
-//! benchmarks against others.
+//! House tasks, run as `cargo xtask TASK`: the whole check of a change, the floors of the crates, the house rules,
+//! fuzzing, the benchmarks against others.
 
 mod bench;
 mod ci;
 mod floors;
+mod fuzz;
 mod metadata;
 mod tidy;
 mod tools;
@@ -16,6 +17,8 @@ const USAGE: &str = "usage: cargo xtask TASK
 tasks:
   ci [--install]   format, lints, floors, tidy, tests, docs, examples and the README's command; --install is the
                    consent to install what is missing (system packages by apt, Rust components by rustup)
+  fuzz [TARGET] [--seconds N]
+                   fuzz every kind of file that is read, or one, for 600 s each; needs a C++ compiler
   floors           check that every crate uses lower floors only
   tidy             check the house rules
   bench pictures [--quick] [--json] [--repeats N] [--only ENGINE,...]
@@ -32,6 +35,13 @@ fn main() -> ExitCode {
     let outcome = match words.as_slice() {
         ["ci"] => return verdict(ci::run(&root, false)),
         ["ci", "--install"] => return verdict(ci::run(&root, true)),
+        ["fuzz", rest @ ..] => match fuzz::Options::parse(rest) {
+            Some(options) => fuzz::run(&root, &options).map(|report| println!("{report}")),
+            None => {
+                eprintln!("{USAGE}");
+                return ExitCode::from(2);
+            }
+        },
         ["floors"] => floors::run(&root).map(|report| println!("{report}")),
         ["tidy"] => tidy::run(&root).map(|report| println!("{report}")),
         ["bench", words @ ..] => match bench::run(&root, words) {

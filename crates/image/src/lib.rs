@@ -22,4 +22,7 @@ pub use limits::Limits;
 pub use read::{
     DecodedImage, Texels, decode, decode_bytes, image_from_bytes, layers_from_bytes, read_image, read_layers,
 };
-pub use write::{encode_exr, encode_png, write_atomic, write_exr, write_png, write_png8, write_png8_rgba};
+pub use write::{
+    encode_exr, encode_png, remove_abandoned, temporary_in, write_atomic, write_exr, write_png, write_png8,
+    write_png8_rgba,
+};

@@ -1,8 +1,12 @@
 //! Files appear whole or not at all: permissions, errors, nothing left behind, a kill at any moment.
 
 use photinus_image::tonemap::Tonemap;
-use photinus_image::{Image, ImageErrorKind, Layers, encode_exr, read_image, write_atomic, write_exr, write_png};
+use photinus_image::{
+    Image, ImageErrorKind, Layers, encode_exr, read_image, remove_abandoned, temporary_in, write_atomic, write_exr,
+    write_png,
+};
 use std::path::Path;
+use std::time::{Duration, SystemTime};
 
 fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<_> =
@@ -119,4 +123,30 @@ fn a_killed_writer_leaves_the_old_or_the_new_file() {
         let found = std::fs::read(&path).unwrap();
         assert!(candidates.contains(&found), "half a file of {} bytes after round {round}", found.len());
     }
+}
+
+#[test]
+fn only_old_temporary_files_that_nobody_holds_are_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let age = |name: &str, seconds: u64| {
+        let file = std::fs::File::options().create(true).append(true).open(folder.path().join(name)).unwrap();
+        file.set_modified(SystemTime::now() - Duration::from_secs(seconds)).unwrap();
+    };
+    let old =
+        ["a.png", ".photinus-.tmp", ".photinus-abcdef.exr", ".photinus-abcdefg.tmp", ".photinus-ab-def.tmp", "x.tmp"];
+    old.iter().for_each(|name| age(name, 7200));
+    age(".photinus-abc123.tmp", 7200);
+    age(".photinus-ABC123.tmp", 70);
+    age(".photinus-young1.tmp", 5);
+    std::fs::create_dir(folder.path().join(".photinus-folder.tmp")).unwrap();
+    let held = temporary_in(folder.path()).unwrap();
+    held.as_file().set_modified(SystemTime::now() - Duration::from_secs(7200)).unwrap();
+    let held_name = held.path().file_name().unwrap().to_str().unwrap().to_owned();
+
+    assert_eq!(remove_abandoned(folder.path()), 2);
+    let mut left: Vec<&str> = [&old[..], &[".photinus-young1.tmp", ".photinus-folder.tmp", &held_name]].concat();
+    left.sort_unstable();
+    assert_eq!(names(folder.path()), left);
+    drop(held);
+    assert_eq!(remove_abandoned(&folder.path().join("missing")), 0);
 }

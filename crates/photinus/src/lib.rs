@@ -19,7 +19,7 @@ pub use built_in::{BuiltInScene, built_in_scenes, write_built_in};
 pub use compare::{Comparison, compare};
 pub use error::{Error, Result};
 pub use info::{BoundsInfo, CameraInfo, LightKinds, SceneInfo};
-pub use output::{check_writable, write_drawing, write_json};
+pub use output::{check_writable, remove_abandoned, write_drawing, write_json};
 pub use photinus_geometry as geometry;
 pub use photinus_image as image;
 pub use photinus_image::tonemap::Tonemap;

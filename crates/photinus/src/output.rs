@@ -46,6 +46,13 @@ pub fn check_writable(path: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Removes temporary files that killed renders left in the folder of `path`: a file is written under another name and
+/// renamed, and a program that is killed in between cannot tidy up. Those of running programs stay.
+pub fn remove_abandoned(path: &Path) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    photinus_image::remove_abandoned(folder.unwrap_or(Path::new(".")));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

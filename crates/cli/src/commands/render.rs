@@ -213,6 +213,7 @@ impl Target {
         let target = Self { output, tonemap: names::tonemap(&args.tonemap)?, exposure: args.exposure };
         for path in [Some(target.path()), args.stats.as_deref(), args.record_queries.as_deref()].into_iter().flatten() {
             photinus::check_writable(path)?;
+            photinus::remove_abandoned(path);
         }
         Ok(target)
     }

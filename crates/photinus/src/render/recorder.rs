@@ -25,15 +25,7 @@ impl Recorder {
                 Some(folder) if !folder.as_os_str().is_empty() => folder,
                 _ => Path::new("."),
             };
-            let mut builder = tempfile::Builder::new();
-            builder.prefix(".photinus-").suffix(".tmp");
-            #[cfg(unix)]
-            {
-                use std::os::unix::fs::PermissionsExt;
-                // Unlike the builder's own default of 0600; the system takes the umask off.
-                builder.permissions(std::fs::Permissions::from_mode(0o666));
-            }
-            let out = BufWriter::with_capacity(BUFFER, builder.tempfile_in(folder)?);
+            let out = BufWriter::with_capacity(BUFFER, photinus_image::temporary_in(folder)?);
             let primitives = world.primitives();
             let (triangles, spheres) = (primitives.triangle_count() as u64, primitives.spheres.len() as u64);
             QueryFileWriter::new(out, world.geometry_hash(), triangles, spheres)

@@ -2,6 +2,7 @@
 
 use crate::Mesh;
 use glam::{DAffine3, DMat3};
+use photinus_geometry::Vec3;
 
 /// Moves a mesh; a map that mirrors keeps its outside outside. `flip_normals` then turns it inside out.
 ///
@@ -22,7 +23,7 @@ pub fn place_mesh(mesh: &mut Mesh, map: &DAffine3, flip_normals: bool) {
         );
         for n in &mut mesh.normals {
             let moved = cofactors * n.as_dvec3();
-            *n = moved.try_normalize().unwrap_or(moved).as_vec3();
+            *n = moved.try_normalize().unwrap_or_default().as_vec3();
         }
     }
     if flip_normals {
@@ -35,6 +36,25 @@ pub fn place_mesh(mesh: &mut Mesh, map: &DAffine3, flip_normals: bool) {
             t.swap(1, 2);
         }
     }
+    replace_lost_normals(mesh);
+}
+
+/// Normals that a map without inverse takes away: the mean of the faces', or any where these have no area left.
+fn replace_lost_normals(mesh: &mut Mesh) {
+    if mesh.normals.iter().all(|n| *n != Vec3::ZERO) {
+        return;
+    }
+    let mut means = vec![Vec3::ZERO; mesh.normals.len()];
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+        let face = (b - a).cross(c - a).try_normalize().unwrap_or_default();
+        t.iter().for_each(|&v| means[v as usize] += face);
+    }
+    for (n, mean) in mesh.normals.iter_mut().zip(means) {
+        if *n == Vec3::ZERO {
+            *n = mean.try_normalize().unwrap_or(Vec3::Z);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -42,12 +62,23 @@ mod tests {
     use super::*;
     use crate::shapes::{cube, sphere_mesh};
     use glam::DVec3;
-    use photinus_geometry::{Sphere, Vec3};
+    use photinus_geometry::Sphere;
 
     /// Twice the signed volume: positive where the faces look outwards.
     fn volume(mesh: &Mesh) -> f32 {
         let corner = |v: u32| mesh.positions[v as usize];
         mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum()
+    }
+
+    #[test]
+    fn flattened_meshes_keep_unit_normals() {
+        for scale in [DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 1.0), DVec3::new(0.0, 0.0, 1.0), DVec3::ZERO] {
+            let ball = sphere_mesh(Sphere { center: Vec3::ZERO, radius: 1.0 }, [Vec3::X, Vec3::Y, Vec3::Z], false, 16);
+            for mut mesh in [cube(), ball] {
+                place_mesh(&mut mesh, &DAffine3::from_scale(scale), false);
+                assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-5), "{scale}");
+            }
+        }
     }
 
     #[test]

@@ -121,8 +121,8 @@ impl<'a> Source<'a> {
         }
         let n = n as u64;
         let least = match self {
-            Self::Text(_) => 2 * n,
-            Self::Binary { .. } => n * value.size() as u64,
+            Self::Text(_) => n.saturating_mul(2),
+            Self::Binary { .. } => n.saturating_mul(value.size() as u64),
         };
         if least > self.left() + 1 {
             return Err(wrong(format!(

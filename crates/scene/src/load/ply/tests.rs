@@ -162,6 +162,11 @@ fn what_is_broken_is_said() {
         let fault = from_bytes(&encode(format, &huge, &[&c[0]])).unwrap_err();
         assert!(fault.message.contains("500000000 of element \"vertex\""), "{fault:?}");
     }
+    // Twice this many bytes are none in 64 bits.
+    let mut endless = encode("ascii", &header, &[&c[0], &c[1], &c[2], &c[3]]);
+    endless.extend(b"9223372036854775807 0 1 2\n");
+    let fault = from_bytes(&endless).unwrap_err();
+    assert!(fault.message.contains("declares 9223372036854775808 values"), "{fault:?}");
     let no_lists = format!("{CORNERS}element face 0\nelement junk 9000000000000000000\n");
     assert!(read(&encode("ascii", &no_lists, &[&c[0], &c[1], &c[2], &c[3]])).0.triangles.is_empty());
     for (header, what) in [
