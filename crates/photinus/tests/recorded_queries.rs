@@ -233,8 +233,13 @@ fn rays_start_where_those_that_led_to_them_ended() {
                 }
             }
             for search in &block.searches {
-                let end = end_of(&block.rays[search.parent as usize]).expect("the ray met a surface");
-                assert!(near(search.position.into(), end), "{scene}, {mode:?}: {search:?}");
+                let ray = &block.rays[search.parent as usize];
+                let end = end_of(ray).expect("the ray met a surface");
+                let position = Vec3::from(search.position);
+                // The caustic map is asked at more places of a pixel, which here is a fortieth of the view.
+                let from_camera = search.map == MapKind::Caustic && ray.kind == RayKind::Camera;
+                let within_pixel = (position - end).length() <= 0.12 * (end - Vec3::from(ray.origin)).length();
+                assert!(near(position, end) || (from_camera && within_pixel), "{scene}, {mode:?}: {search:?}");
             }
         }
         if scene == "holes" {

@@ -39,34 +39,32 @@ impl Node {
 impl EyePass<'_> {
     /// As [`EyePass::run`], by the thesis's recursion.
     pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.tiles().run(film, observer, |x0, y0, w, h, index, tile, counters| {
-            self.direct_tile(maps, [x0, y0, w, h], index, tile, counters, observer)
-        })
+        self.tiles()
+            .run(film, observer, |index, tile, counters| self.direct_tile(maps, index, tile, counters, observer))
     }
 
     /// Returns how many samples it has made.
     fn direct_tile(
         &self,
         maps: &Maps,
-        window: [u32; 4],
         index: u32,
         tile: &mut Tile,
         counters: &mut Counters,
         observer: &dyn Observer,
     ) -> u32 {
-        let [x0, y0, w, h] = window;
         let mut tracer = self.tracer(index);
         let mut twin = self.twin(Queries::Estimates, index);
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
         let mut scratch = EstimateScratch::for_batch_of(&tracer);
         let mut found: Vec<Estimated> = Vec::new();
         let mut estimates = Estimates::default();
+        let place = tile.place;
         for sample in 0..self.spp {
             if observer.cancelled() {
                 return sample;
             }
             let mut nodes: Vec<Node> = self
-                .camera_paths(x0, y0, w, h, sample, tile)
+                .camera_paths(sample, tile)
                 .into_iter()
                 .map(|p| Node {
                     ray: p.ray,
@@ -86,19 +84,27 @@ impl EyePass<'_> {
                 let mut draws: Vec<Option<Sampler>> = nodes.iter().map(|_| None).collect();
                 tracer.ask(nodes.iter().map(|n| (n.kind(), n.record)));
                 tracer.closest(&rays, &mut hits, counters, |i| {
-                    draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], x0, y0, w, sample)).next_1d()
+                    draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], place, sample)).next_1d()
                 });
                 nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
                 estimates.clear();
                 let mut next = Vec::new();
                 timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
                     for (node, hit) in nodes.iter().zip(&hits) {
-                        let sampler = || self.node_sampler(node, x0, y0, w, sample);
+                        let sampler = || self.node_sampler(node, place, sample);
                         self.branch(node, hit, sampler, tile, &mut next, &mut estimates);
                     }
                 });
                 counters.rays.specular += next.len() as u64;
-                maps.global.estimate(&estimates, maps.knn, &mut twin, &mut scratch, &mut found, counters);
+                maps.global.estimate(
+                    &estimates.list,
+                    &estimates,
+                    maps.knn,
+                    &mut twin,
+                    &mut scratch,
+                    &mut found,
+                    counters,
+                );
                 for (e, found) in estimates.list.iter().zip(&found) {
                     tile.estimated(e.path, found);
                 }
@@ -147,6 +153,7 @@ impl EyePass<'_> {
                 scatter,
                 throughput: node.throughput,
                 path: node.pixel,
+                places: 1,
                 ray: node.record,
             });
         }
@@ -172,8 +179,8 @@ impl EyePass<'_> {
         }
     }
 
-    fn node_sampler(&self, node: &Node, x0: u32, y0: u32, w: u32, sample: u32) -> Sampler {
-        let (x, y) = (self.crop[0] + x0 + node.pixel % w, self.crop[1] + y0 + node.pixel / w);
+    fn node_sampler(&self, node: &Node, place: [u32; 4], sample: u32) -> Sampler {
+        let [x, y] = self.film_pixel(place, node.pixel);
         let stream = node.number << 40 | u64::from(y) << 20 | u64::from(x);
         Sampler::new(self.seed, StreamKind::Eye, stream, self.pass * self.spp + sample)
     }

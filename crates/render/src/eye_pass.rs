@@ -107,14 +107,14 @@ impl EyePass<'_> {
     /// Renders one pass into `film` (channels of each pixel of the window, row by row), means over the samples of
     /// the pass. Where it is stopped, tiles that have any sample are there, as means over those.
     pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.tiles().run(film, observer, |x0, y0, w, h, index, tile, counters| {
+        self.tiles().run(film, observer, |index, tile, counters| {
             let mut tracer = self.tracer(index);
             let mut twin = self.twin(Queries::Estimates, index);
             for sample in 0..self.spp {
                 if observer.cancelled() {
                     return sample;
                 }
-                let paths = self.camera_paths(x0, y0, w, h, sample, tile);
+                let paths = self.camera_paths(sample, tile);
                 counters.rays.camera += paths.len() as u64;
                 let estimates = self.follow(paths, tile, &mut tracer, counters);
                 self.gather(&estimates, &mut twin, tile, &mut tracer, counters);
@@ -140,12 +140,24 @@ impl EyePass<'_> {
         Twin::new(self.profile_every, queries, self.pass, tile)
     }
 
-    pub(crate) fn camera_paths(&self, x0: u32, y0: u32, w: u32, h: u32, sample: u32, tile: &mut Tile) -> Vec<Path> {
-        let mut paths = Vec::with_capacity((w * h) as usize);
-        for pixel in 0..w * h {
-            let (x, y) = (self.crop[0] + x0 + pixel % w, self.crop[1] + y0 + pixel / w);
-            let stream = u64::from(y) << 32 | u64::from(x);
-            let mut sampler = Sampler::new(self.seed, StreamKind::Eye, stream, self.pass * self.spp + sample);
+    /// The pixel of the film that is number `pixel` of the tile at `place`.
+    pub(crate) fn film_pixel(&self, [x0, y0, width, _]: [u32; 4], pixel: u32) -> [u32; 2] {
+        [self.crop[0] + x0 + pixel % width, self.crop[1] + y0 + pixel / width]
+    }
+
+    /// The random numbers of a path, those of its camera ray first.
+    pub(crate) fn camera_sampler(&self, [x, y]: [u32; 2], sample: u32) -> Sampler {
+        Sampler::new(self.seed, StreamKind::Eye, u64::from(y) << 32 | u64::from(x), self.pass * self.spp + sample)
+    }
+
+    /// The paths of a sample of a tile.
+    pub(crate) fn camera_paths(&self, sample: u32, tile: &mut Tile) -> Vec<Path> {
+        tile.sample = sample;
+        let count = tile.place[2] * tile.place[3];
+        let mut paths = Vec::with_capacity(count as usize);
+        for pixel in 0..count {
+            let [x, y] = self.film_pixel(tile.place, pixel);
+            let mut sampler = self.camera_sampler([x, y], sample);
             let ([dx, dy], weight) = self.filter.sample(sampler.next_2d());
             tile.weights[pixel as usize] = weight;
             let film = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
@@ -275,7 +287,7 @@ impl EyePass<'_> {
             self.light(&mut path, point, &bsdf, shadows);
         }
         if self.maps.is_some() && bsdf.has(LobeSet::GATHER) {
-            self.ask(&mut path, point, &bsdf, wo, next, estimates);
+            self.ask(&mut path, point, &bsdf, wo, tile, next, estimates);
         }
         self.bounce(path, point, &bsdf, next);
     }
@@ -354,23 +366,24 @@ impl EyePass<'_> {
         point: &SurfacePoint,
         bsdf: &Bsdf,
         wo: Vec3,
+        tile: &Tile,
         next: &mut Vec<Path>,
         estimates: &mut Estimates,
     ) {
         let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
         let scatter = estimates.scatter(bsdf);
-        estimates.list.push(Estimate {
-            query: GatherQuery {
-                position: point.position,
-                radius: 0.7 * path.width,
-                normal: point.geometric_normal * side,
-                max_depth: (self.max_depth - path.depth).min(127),
-            },
-            scatter,
-            throughput: path.throughput,
-            path: path.pixel,
-            ray: path.record,
-        });
+        let query = GatherQuery {
+            position: point.position,
+            radius: 0.7 * path.width,
+            normal: point.geometric_normal * side,
+            max_depth: (self.max_depth - path.depth).min(127),
+        };
+        let mut estimate =
+            Estimate { query, scatter, throughput: path.throughput, path: path.pixel, places: 1, ray: path.record };
+        if path.depth == 1 {
+            self.add_companions(path, tile, &mut estimate, &mut estimates.companions);
+        }
+        estimates.list.push(estimate);
         if !self.probe {
             return;
         }
@@ -472,16 +485,20 @@ impl EyePass<'_> {
         let Some(maps) = self.maps else { return };
         let mut scratch = EstimateScratch::for_batch_of(tracer);
         let mut out: Vec<Estimated> = Vec::new();
-        maps.global.estimate(estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-        for (e, found) in estimates.list.iter().zip(&out) {
+        let (list, companions) = (&estimates.list, &estimates.companions);
+        maps.global.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
+        for (e, found) in list.iter().zip(&out) {
             tile.add(e.path, Part::Indirect, found.radiance);
             tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
         }
         if let Some(caustic) = &maps.caustic {
-            caustic.estimate(estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-            for (e, found) in estimates.list.iter().zip(&out) {
-                tile.add(e.path, Part::Caustic, found.radiance);
-                tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
+            for list in [list, companions] {
+                caustic.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
+                for (e, found) in list.iter().zip(&out) {
+                    let share = 1.0 / e.places as f32;
+                    tile.add(e.path, Part::Caustic, found.radiance * share);
+                    tile.add_scalar(e.path, Aov::PhotonDensity, found.density * share);
+                }
             }
         }
         scratch.hand_over(tracer);

@@ -7,6 +7,7 @@
 pub mod bsdf;
 mod camera;
 mod caustic_plan;
+mod companions;
 mod control;
 mod counters;
 mod direct;

@@ -29,12 +29,15 @@ pub(crate) struct Maps {
 }
 
 /// An estimate to be made: where, for which way of seeing, and what it counts.
+#[derive(Clone, Copy)]
 pub(crate) struct Estimate {
     pub query: GatherQuery,
     pub scatter: Scatter,
     pub throughput: Vec3,
     /// The path it belongs to.
     pub path: u32,
+    /// Places that the caustic map is asked about in its stead, itself included.
+    pub places: u32,
     /// Record of the ray that asks.
     pub ray: u32,
 }
@@ -52,6 +55,8 @@ pub(crate) enum Scatter {
 #[derive(Default)]
 pub(crate) struct Estimates {
     pub list: Vec<Estimate>,
+    /// More places of the same pixel and surface that the caustic map is asked about, see [`crate::companions`].
+    pub companions: Vec<Estimate>,
     /// Scattering functions that depend on directions; few surfaces need theirs kept.
     bsdfs: Vec<Bsdf>,
 }
@@ -71,6 +76,7 @@ impl Estimates {
     /// Starts again.
     pub fn clear(&mut self) {
         self.list.clear();
+        self.companions.clear();
         self.bsdfs.clear();
     }
 }
@@ -109,10 +115,11 @@ impl EstimateScratch {
 }
 
 impl Map {
-    /// Makes the estimates of a batch; `out` gets one entry for each. The radius of a query is a lower bound for
+    /// Makes the estimates `list` of the batch `estimates`; `out` gets one entry for each. The radius of a query is a lower bound for
     /// that of the map: a wide pixel gathers over its own width.
     pub fn estimate(
         &self,
+        list: &[Estimate],
         estimates: &Estimates,
         knn: Option<u32>,
         twin: &mut Twin,
@@ -120,7 +127,7 @@ impl Map {
         out: &mut Vec<Estimated>,
         counters: &mut Counters,
     ) {
-        let Estimates { list, bsdfs } = estimates;
+        let bsdfs = &estimates.bsdfs;
         out.clear();
         out.resize(list.len(), Estimated::default());
         counters.searches += list.len() as u64;

@@ -199,6 +199,13 @@ impl PhotonPass<'_> {
                     add(&mut counters.photons.power.escaped, walk.flux);
                     return false;
                 }
+                // A caustic needs a mirror first.
+                let material = world.shapes[world.shape_of(hit.prim)].material;
+                if self.keep == Keep::Caustic && walk.depth == 0 && world.materials.is_diffuse(material) {
+                    counters.photons.absorbed += 1;
+                    add(&mut counters.photons.power.absorbed, walk.flux);
+                    return false;
+                }
                 let point = world.surface(&walk.ray, &hit, 0.0);
                 self.land(world, lights, walk, &point, &mut stored, &mut counters)
             };
@@ -229,6 +236,11 @@ impl PhotonPass<'_> {
         if walk.depth >= self.max_depth {
             counters.photons.cut += 1;
             add(&mut counters.photons.power.cut, walk.flux);
+            return false;
+        }
+        if self.keep == Keep::Caustic && !bsdf.has(LobeSet::CONTINUE) {
+            counters.photons.absorbed += 1;
+            add(&mut counters.photons.power.absorbed, walk.flux);
             return false;
         }
         let choice = walk.sampler.next_1d();

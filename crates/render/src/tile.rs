@@ -26,6 +26,10 @@ pub(crate) struct Tile<'a> {
     pub out: Vec<f32>,
     /// Weight of each pixel's present sample.
     pub weights: Vec<f32>,
+    /// Place in the window of the film: x, y, width, height.
+    pub place: [u32; 4],
+    /// Number of the present sample in the pass.
+    pub sample: u32,
     layout: &'a FilmLayout,
 }
 
@@ -102,13 +106,12 @@ pub(crate) struct Tiles<'a> {
 }
 
 impl Tiles<'_> {
-    /// Renders all tiles by `render(x0, y0, width, height, index, tile, counters)`, which returns how many samples it has
-    /// made, fewer than asked for only where it is stopped; puts them into `film`.
+    /// Renders all tiles by `render(index, tile, counters)`, which returns how many samples it has made, fewer than asked for only where it is stopped; puts them into `film`.
     pub fn run(
         &self,
         film: &mut [f32],
         observer: &dyn Observer,
-        render: impl Fn(u32, u32, u32, u32, u32, &mut Tile, &mut Counters) -> u32 + Sync,
+        render: impl Fn(u32, &mut Tile, &mut Counters) -> u32 + Sync,
     ) -> Result<Counters, Cancelled> {
         let [_, _, width, height] = self.window;
         let (across, down) = (width.div_ceil(TILE), height.div_ceil(TILE));
@@ -129,10 +132,12 @@ impl Tiles<'_> {
                 let mut tile = Tile {
                     out: vec![0.0; pixels * self.layout.channels()],
                     weights: vec![1.0; pixels],
+                    place: [x0, y0, w, h],
+                    sample: 0,
                     layout: self.layout,
                 };
                 let mut counters = Counters::default();
-                let samples = render(x0, y0, w, h, index, &mut tile, &mut counters);
+                let samples = render(index, &mut tile, &mut counters);
                 if samples == 0 {
                     return None;
                 }

@@ -24,6 +24,7 @@ pub struct Materials {
 struct Prepared {
     material: Material,
     has_opacity: bool,
+    is_diffuse: bool,
 }
 
 /// A table that the lobes of a material look up; indices are inside over outside.
@@ -63,6 +64,13 @@ impl Materials {
             let material = if sound { named.material.clone() } else { MISSING };
             let has_opacity = matches!(material, Material::Mask { .. } | Material::Null)
                 || material.nested().any(|id| result.materials[id.0 as usize].has_opacity);
+            let is_diffuse = match &material {
+                Material::Diffuse { .. } => true,
+                Material::TwoSided { .. } | Material::BumpMap { .. } | Material::NormalMap { .. } => {
+                    material.nested().all(|id| result.materials[id.0 as usize].is_diffuse)
+                }
+                _ => false,
+            };
             if model == SurfaceModel::Physical {
                 for table in super::members::tables(&material) {
                     result.add_table(table);
@@ -73,7 +81,7 @@ impl Materials {
                     }
                 }
             }
-            result.materials.push(Prepared { material, has_opacity });
+            result.materials.push(Prepared { material, has_opacity, is_diffuse });
         }
         result
     }
@@ -143,6 +151,13 @@ impl Materials {
     #[inline]
     pub fn has_opacity(&self, material: MaterialId) -> bool {
         self.materials.get(material.0 as usize).is_some_and(|prepared| prepared.has_opacity)
+    }
+
+    /// Whether nothing here scatters as a mirror does, wholly or in part: all light goes into
+    /// [`LobeSet::GATHER`](super::LobeSet::GATHER).
+    #[inline]
+    pub fn is_diffuse(&self, material: MaterialId) -> bool {
+        self.materials.get(material.0 as usize).is_none_or(|prepared| prepared.is_diffuse)
     }
 
     /// Probability, 0 to 1, that a ray meets the surface instead of passing straight through: masks, 0 for the null

@@ -1,6 +1,6 @@
 //! The cell table: which photons are a cell's.
 //!
-//! A hash table over the occupied cells only, so that the extent of the scene costs nothing. Memory: 16 bytes a slot
+//! A hash table over the occupied cells only, so that the extent of the scene costs nothing. Memory: 16.5 bytes a slot
 //! and two to four slots an occupied cell, of which there are no more than photons.
 
 use super::cells::{CellBox, Cells};
@@ -19,11 +19,17 @@ struct Entry {
 /// No cell has this index.
 const FREE: Entry = Entry { cell: u64::MAX, first: 0, end: 0 };
 
+/// Bits of the filter for each slot, as a power of two.
+const FILTER_BITS: u32 = 2;
+
 /// Open addressing with linear probing over a power of two of entries, at most half of them taken.
 #[derive(Debug)]
 pub(crate) struct CellTable {
     entries: Vec<Entry>,
     shift: u32,
+    /// Four bits a slot, set where a cell's hash falls there: most cells around a query are
+    /// empty, and this much of the table stays near.
+    filter: Vec<u64>,
     cell_count: usize,
     photon_count: usize,
 }
@@ -43,6 +49,7 @@ impl CellTable {
         let mut table = Self {
             entries: vec![FREE; 1 << bits],
             shift: 64 - bits,
+            filter: vec![0; (1usize << (bits + FILTER_BITS)).div_ceil(64)],
             cell_count: firsts.len(),
             photon_count: items.len(),
         };
@@ -55,12 +62,22 @@ impl CellTable {
 
     /// Fibonacci hashing: the high bits of the product with 2^64 over the golden ratio.
     #[inline]
-    fn home(&self, cell: u64) -> usize {
-        (cell.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> self.shift) as usize
+    fn hash(cell: u64) -> u64 {
+        cell.wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    }
+
+    /// Word and bit of the filter.
+    #[inline]
+    fn filter_bit(&self, hash: u64) -> (usize, u64) {
+        let bit = hash >> (self.shift - FILTER_BITS);
+        ((bit >> 6) as usize, 1 << (bit & 63))
     }
 
     fn insert(&mut self, entry: Entry) {
-        let mut at = self.home(entry.cell);
+        let hash = Self::hash(entry.cell);
+        let (word, bit) = self.filter_bit(hash);
+        self.filter[word] |= bit;
+        let mut at = (hash >> self.shift) as usize;
         while self.entries[at].cell != FREE.cell {
             at = (at + 1) & (self.entries.len() - 1);
         }
@@ -70,7 +87,12 @@ impl CellTable {
     /// Slots of a cell's photons; empty where there are none.
     #[inline]
     fn slots(&self, cell: u64) -> Range<u32> {
-        let mut at = self.home(cell);
+        let hash = Self::hash(cell);
+        let (word, bit) = self.filter_bit(hash);
+        if self.filter[word] & bit == 0 {
+            return 0..0;
+        }
+        let mut at = (hash >> self.shift) as usize;
         loop {
             let entry = self.entries[at];
             if entry.cell == cell || entry.cell == FREE.cell {
@@ -87,7 +109,7 @@ impl CellTable {
 
     /// Memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        self.entries.capacity() * size_of::<Entry>()
+        self.entries.capacity() * size_of::<Entry>() + self.filter.capacity() * size_of::<u64>()
     }
 
     /// Appends the slots of the occupied cells of a box; `false`, with nothing appended, where the box has more cells
