@@ -296,4 +296,13 @@ mod tests {
         assert_eq!(our_work("{\"passes\": 12}"), "12 passes");
         assert_eq!(our_work("nothing"), "");
     }
+
+    #[test]
+    fn without_an_environment_peers_are_missing_and_ours_is_not() {
+        let bench = Bench::new("photinus".into(), None, "nowhere".into(), true);
+        assert_eq!(bench.provide(Package::Ours), Ok(()));
+        assert!(bench.provide(Package::Python("mitsuba")).unwrap_err().starts_with("not installed"));
+        assert_eq!(bench.provide(Package::Unfit("no scale")), Err("no scale".to_owned()));
+        assert_eq!(bench.pins(), "none");
+    }
 }
