@@ -25,7 +25,8 @@ pub fn run(
     limit_seconds: u32,
 ) -> Result<Outcome, Failure> {
     let (log, times) = (folder.join("stderr.log"), folder.join("times.txt"));
-    let shown = arguments.iter().take(2).cloned().collect::<Vec<_>>().join(" ");
+    let name = |word: &String| Path::new(word).file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let shown = arguments.iter().take(2).map(name).collect::<Vec<_>>().join(" ");
     let output = Command::new("sh")
         .args(["-c", SCRIPT, "sh"])
         .args([&log, &times])
