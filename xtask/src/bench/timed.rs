@@ -92,7 +92,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let said = sh("echo first >&2; echo no glass >&2; exit 3", folder.path(), 60).err().unwrap();
         assert!(said.ends_with("failed: no glass"), "{said}");
-        let said = sh("sleep 20", folder.path(), 1).err().unwrap();
+        let said = sh("exec sleep 20", folder.path(), 1).err().unwrap();
         assert!(said.contains("still ran after 1 s"), "{said}");
     }
 }
