@@ -43,17 +43,17 @@ def make_maps(scene, folder, options):
     return octree, ["-ap", surfaces, BANDWIDTH, "-ap", caustic, BANDWIDTH]
 
 
-def gather(scene, octree, maps, divisions, out, size=None, band=0, bands=1):
-    """Renders one of some bands of rows, from the top, with so many gather rays a pixel."""
+def gather(scene, octree, maps, divisions, out, band, size=None):
+    """Renders one of the bands of rows, from the top, with so many gather rays a pixel."""
     with open(os.path.join(scene, "scene.json")) as file:
         camera = json.load(file)["camera"]
     with open(os.path.join(scene, "view.txt")) as file:
         view = file.read().split()
     width, height = size or (camera["width"], camera["height"])
     opening = math.radians(camera["fov_degrees"])
-    narrow = math.degrees(2.0 * math.atan(math.tan(opening / 2.0) / bands))
+    narrow = math.degrees(2.0 * math.atan(math.tan(opening / 2.0) / BANDS))
     # A view may be lifted by its own heights; of repeated options the last one counts.
-    view += ["-vv", str(narrow), "-vl", str((bands - 1) / 2 - band), "-x", str(width), "-y", str(height // bands)]
+    view += ["-vv", str(narrow), "-vl", str((BANDS - 1) / 2 - band), "-x", str(width), "-y", str(height // BANDS)]
     with open(out, "wb") as file:
         tool("rpict", "-t", "0", *view, *GATHER, "-ad", str(divisions), *maps, octree, stdout=file)
 
@@ -68,16 +68,15 @@ def main():
             costs = json.load(file)
         octree, maps = make_maps(options.scene, folder, options)
         files, divisions = [], []
+        expected, begun = 0.0, budget.spent()
         for band in range(BANDS):
-            # What is left is shared evenly; what bands cost turns out on the way.
-            share = (options.budget - budget.spent()) / (BANDS - band)
-            divisions.append(budget.affordable(costs, share * BANDS))
+            # The same rays everywhere, as far as the bands so far cost what was expected of them.
+            dearer = (budget.spent() - begun) / expected if expected else 1.0
+            rest = {key: dearer * sum(cost[key] for cost in costs[band:]) for key in ("fixed", "each")}
+            divisions.append(budget.affordable(rest, options.budget - budget.spent()))
             files.append(os.path.join(folder, f"{band}.hdr"))
-            before = budget.spent()
-            gather(options.scene, octree, maps, divisions[-1], files[-1], band=band, bands=BANDS)
-            expected = (costs["fixed"] + divisions[-1] * costs["each"]) / BANDS
-            ratio = (budget.spent() - before) / expected
-            costs = {key: value * ratio for key, value in costs.items()}
+            gather(options.scene, octree, maps, divisions[-1], files[-1], band=band)
+            expected += costs[band]["fixed"] + divisions[-1] * costs[band]["each"]
         measured = budget.spent()
         join(files, options.out, folder)
         many, few = photons(options.budget)
@@ -86,19 +85,21 @@ def main():
 
 
 def calibrate(options, folder):
-    """Costs of gather rays a pixel, on a picture of 256 x 256 pixels."""
+    """Costs of gather rays a pixel in each band, on a picture of 256 x 256 pixels."""
     octree, maps = make_maps(options.scene, folder, options)
-    seconds = []
-    for divisions in (2, 10):
-        before = budget.spent()
-        gather(options.scene, octree, maps, divisions, os.path.join(folder, "out.hdr"), size=(256, 256))
-        seconds.append(budget.spent() - before)
-    costs = budget.linear(2, seconds[0], 10, seconds[1])
     with open(os.path.join(options.scene, "scene.json")) as file:
         camera = json.load(file)["camera"]
     scale = camera["width"] * camera["height"] / 256**2
+    costs = []
+    for band in range(BANDS):
+        seconds = []
+        for divisions in (2, 10):
+            before = budget.spent()
+            gather(options.scene, octree, maps, divisions, os.path.join(folder, "out.hdr"), size=(256, 256), band=band)
+            seconds.append(scale * (budget.spent() - before))
+        costs.append(budget.linear(2, seconds[0], 10, seconds[1]))
     with open(options.costs, "w") as file:
-        json.dump({key: scale * value for key, value in costs.items()}, file)
+        json.dump(costs, file)
 
 
 def join(files, out, folder):

@@ -10,8 +10,9 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// How far an engine's brightness may lie from the reference's.
-const TOLERANCE: f64 = 0.05;
+/// How far an engine's brightness may lie from the reference's: photon methods are biased by some percent, wrong units by
+/// more.
+const TOLERANCE: f64 = 0.08;
 
 /// Errors of a picture, and the processor seconds that it took.
 #[derive(Clone, Copy, Debug)]

@@ -60,7 +60,10 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         if reason.is_none() {
             match bench.agrees(engine, &settings) {
                 Ok(note) => notes.extend(note),
-                Err(why) => *reason = Some(why),
+                Err(why) => {
+                    eprintln!("{}: {why}", engine.name);
+                    *reason = Some(why);
+                }
             }
         }
     }
