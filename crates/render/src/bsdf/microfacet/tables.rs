@@ -15,9 +15,6 @@ const ALPHAS: usize = 16;
 /// Points a side of the grid over the random square for one table entry.
 const POINTS: u32 = 20;
 
-/// The same for a mean over cosines, which has many entries to average over.
-const MEAN_POINTS: u32 = 10;
-
 /// Values over the cosine, linear in its square root between nodes. Small enough to be part of a lobe.
 #[derive(Clone, Copy, Debug)]
 pub struct CosTable([f32; COSINES]);
@@ -96,7 +93,9 @@ pub struct Coat {
     pub transmittance: CosTable,
     /// Its mean under diffuse light, 2 * integral of T(mu) mu.
     pub mean_transmittance: f32,
-    /// Reflectance of the inside under diffuse light.
+    /// Reflectance of the inside under diffuse light: all that does not leave. Of diffuse light inside the share
+    /// mean_transmittance / eta^2 leaves, as radiance that comes in is eta^2 times as strong there; what single scattering
+    /// loses between the facets stays inside.
     pub internal_reflectance: f32,
 }
 
@@ -105,7 +104,6 @@ struct Row {
     /// Reflectance and transmittance seen from outside, then from inside.
     sides: [[CosTable; 2]; 2],
     mean_transmittance: f32,
-    internal_reflectance: f32,
 }
 
 /// Directional reflectance and transmittance of a rough interface between dielectrics, from both sides, for all
@@ -137,14 +135,7 @@ impl InterfaceTable {
             let mean = |steps: u32, f: &dyn Fn(f32) -> f32| {
                 (0..steps).map(|i| f(((i as f32 + 0.5) / steps as f32).sqrt())).sum::<f32>() / steps as f32
             };
-            let inner =
-                |wo: Vec3, m: Vec3| [fresnel_dielectric(wo.dot(m), 1.0 / eta).0 * mirrored_shadow(&facets, wo, m)];
-            Row {
-                sides,
-                mean_transmittance: mean(1024, &|cos| sides[0][1].at(cos)),
-                // The table is too coarse for the kink of total reflection.
-                internal_reflectance: mean(64, &|cos| mean_over_facets(&facets, cos, MEAN_POINTS, inner)[0]),
-            }
+            Row { sides, mean_transmittance: mean(1024, &|cos| sides[0][1].at(cos)) }
         };
         Self { model, eta, rows: (0..ALPHAS).into_par_iter().map(row).collect() }
     }
@@ -168,11 +159,11 @@ impl InterfaceTable {
     pub fn coat(&self, alpha: f32) -> Coat {
         let (i, t) = alpha_place(alpha);
         let (a, b) = (&self.rows[i], &self.rows[i + 1]);
-        let blend = |a: f32, b: f32| a + (b - a) * t;
+        let mean_transmittance = a.mean_transmittance + (b.mean_transmittance - a.mean_transmittance) * t;
         Coat {
             transmittance: CosTable::blend(&a.sides[0][1], &b.sides[0][1], t),
-            mean_transmittance: blend(a.mean_transmittance, b.mean_transmittance),
-            internal_reflectance: blend(a.internal_reflectance, b.internal_reflectance),
+            mean_transmittance,
+            internal_reflectance: 1.0 - mean_transmittance / (self.eta * self.eta),
         }
     }
 }
@@ -235,6 +226,23 @@ mod tests {
             let cos = i as f32 / 20.0;
             let exact = 1.0 - fresnel_dielectric(cos, 1.5).0;
             assert!((transmittance.at(cos) - exact).abs() < 0.012, "{cos}: {} against {exact}", transmittance.at(cos));
+        }
+    }
+
+    /// Light that enters a coat over a white base comes out again, whatever the roughness.
+    #[test]
+    fn a_white_base_sends_back_what_enters() {
+        for model in [MicrofacetModel::Ggx, MicrofacetModel::Beckmann] {
+            let table = InterfaceTable::new(model, 1.5);
+            for alpha in [0.0, 0.1, 0.3, 0.7] {
+                let Coat { internal_reflectance, mean_transmittance, .. } = table.coat(alpha);
+                // What leaves in one pass is T / eta^2 under diffuse light; the rest comes back any number of times.
+                let out = mean_transmittance / (1.5 * 1.5) / (1.0 - internal_reflectance);
+                assert!((out - 1.0).abs() < 1e-4, "{model:?} {alpha}: {out}");
+                let smooth = fresnel_diffuse_reflectance(1.0 / 1.5);
+                assert!(internal_reflectance > smooth - 0.01, "{model:?} {alpha}: {internal_reflectance}");
+                assert!(internal_reflectance < smooth + 0.1, "{model:?} {alpha}: {internal_reflectance}");
+            }
         }
     }
 
