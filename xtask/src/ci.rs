@@ -61,6 +61,11 @@ impl Ci<'_> {
         self.step("lints", || {
             self.cargo("lints", &[&["clippy"], &release[..], &["--all-targets", "--", "-D", "warnings"]].concat())
         })?;
+        self.step("fuzz lock", || {
+            let of_fuzz = ["metadata", "--locked", "--format-version=1", "--manifest-path=fuzz/Cargo.toml"];
+            self.cargo("fuzz-lock", &of_fuzz)
+                .map_err(|e| format!("{e}\n`cargo update --workspace` in fuzz/ repairs it"))
+        })?;
         self.step("build", || self.cargo("build", &["build", "--release", "--locked"]))?;
         self.step("tests", || {
             let outcome = self.cargo("tests", &[&["test"], &release[..], &["--no-fail-fast"]].concat());
