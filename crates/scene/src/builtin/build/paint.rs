@@ -10,6 +10,9 @@ use std::sync::Arc;
 
 /// Index of varnish, glaze and plastic coats.
 const COAT_IOR: f32 = 1.5;
+/// A coat of wax: index low enough that it mirrors a hundredth, GGX roughness low enough that paths follow it.
+const WAX_IOR: f32 = 1.25;
+const WAX_ROUGHNESS: f32 = 0.2;
 
 /// Linear RGB of a chart colour 0xRRGGBB (IEC 61966-2-1).
 pub fn linear(number: u32) -> [f32; 3] {
@@ -26,7 +29,7 @@ pub fn chart(number: u32) -> ColorInput {
 pub enum Finish {
     /// Not at all: cloth, wall paint, paper.
     Matte,
-    /// Softly, with this GGX roughness: oiled wood, leaves.
+    /// Softly, with this GGX roughness: oiled wood, leaves; on a [waxed stage](Stage::waxed) like wax.
     Satin(f32),
     /// Like a smooth coat: glaze, lacquer.
     Gloss,
@@ -44,7 +47,7 @@ impl Stage {
 
     /// A coloured surface, the same from both sides.
     pub fn paint(&mut self, name: &str, color: u32, finish: Finish) -> MaterialId {
-        self.once(name, |_| finished(chart(color), finish))
+        self.once(name, |stage| finished(chart(color), finish, stage.waxed))
     }
 
     /// A surface that shows a picture; one repeat covers `tile` of the mesh's texture coordinates.
@@ -66,7 +69,7 @@ impl Stage {
                 },
                 to_uv: Affine3A::from_scale(Vec3::new(1.0 / tile[0], 1.0 / tile[1], 1.0)),
             });
-            finished(ColorInput::Texture(texture), finish)
+            finished(ColorInput::Texture(texture), finish, stage.waxed)
         })
     }
 
@@ -118,19 +121,23 @@ impl Stage {
     }
 }
 
-fn finished(color: ColorInput, finish: Finish) -> Material {
+fn finished(color: ColorInput, finish: Finish, waxed: bool) -> Material {
     let specular_reflectance = rgb([1.0; 3]);
     match finish {
         Finish::Matte => Material::Diffuse { reflectance: color },
-        Finish::Satin(roughness) => Material::RoughPlastic {
-            model: MicrofacetModel::Ggx,
-            alpha: FloatInput::Constant(roughness),
-            int_ior: COAT_IOR,
-            ext_ior: 1.0,
-            diffuse_reflectance: color,
-            specular_reflectance,
-            nonlinear: false,
-        },
+        Finish::Satin(roughness) => {
+            let (roughness, int_ior) =
+                if waxed { (roughness.min(WAX_ROUGHNESS), WAX_IOR) } else { (roughness, COAT_IOR) };
+            Material::RoughPlastic {
+                model: MicrofacetModel::Ggx,
+                alpha: FloatInput::Constant(roughness),
+                int_ior,
+                ext_ior: 1.0,
+                diffuse_reflectance: color,
+                specular_reflectance,
+                nonlinear: false,
+            }
+        }
         Finish::Gloss => Material::Plastic {
             int_ior: COAT_IOR,
             ext_ior: 1.0,

@@ -13,9 +13,16 @@ pub struct Stage {
     materials: Vec<NamedMaterial>,
     textures: Vec<Texture>,
     lights: Vec<Light>,
+    /// Satin surfaces are waxed.
+    pub(super) waxed: bool,
 }
 
 impl Stage {
+    /// A stage whose satin surfaces wear a coat of wax: thinner in index than varnish, and smooth enough to mirror.
+    pub fn waxed() -> Self {
+        Self { waxed: true, ..Self::default() }
+    }
+
     /// Adds a material.
     pub fn material(&mut self, name: &str, material: Material) -> MaterialId {
         self.materials.push(NamedMaterial { name: name.to_owned(), material });

@@ -10,6 +10,12 @@ use photinus_geometry::Vec3;
 /// Degrees between consecutive leaves of a spiral: the golden angle.
 const GOLDEN_ANGLE: f32 = 137.508;
 
+/// Direction of item `k` within `arc` degrees around a plant's front: plants that stand at walls grow away from them.
+fn around(k: usize, arc: f32) -> f32 {
+    let turn = GOLDEN_ANGLE * k as f32 / 360.0 + 0.5;
+    arc * (turn - turn.floor() - 0.5)
+}
+
 /// A pot of earth on the place's origin.
 pub fn pot(stage: &mut Stage, place: Place, radius: f32, height: f32, glaze: MaterialId) {
     let outer = profile(
@@ -21,6 +27,22 @@ pub fn pot(stage: &mut Stage, place: Place, radius: f32, height: f32, glaze: Mat
     let earth = stage.paint("earth", 0x3A2B20, Finish::Matte);
     let heap = [[0.94 * radius, 0.8 * height], [0.5 * radius, 0.85 * height], [0.0, 0.86 * height]];
     stage.mesh("earth", earth, revolve(&heap, 20).placed(place));
+}
+
+/// A pot on three cords from a hook in the ceiling; gives the place of its earth.
+pub fn hanging_pot(stage: &mut Stage, hook: Place, drop: f32) -> Place {
+    let grey = stage.paint("grey-glaze", 0x7E8583, Finish::Gloss);
+    let bottom = hook.shift(0.0, -drop, 0.0);
+    pot(stage, bottom, 5.2, 8.0, grey);
+    let cord = stage.paint("cord", 0x2B2826, Finish::Matte);
+    let mut cords = Part::default();
+    for k in 0..3 {
+        let rim = Place::HERE.yaw(120.0 * k as f32).point(Vec3::new(0.0, 8.0 - drop, 5.1));
+        let top = Vec3::Y * -0.2;
+        cords.add(tube(&[rim, (rim + top) * 0.5, top], 4, Ends::Open, |_| 0.12));
+    }
+    stage.mesh("cord", cord, cords.placed(hook));
+    bottom.shift(0.0, 6.6, 0.0)
 }
 
 /// Spreads `triangles` over leaves at these places, or over evenly chosen ones where there are too many places for
@@ -88,17 +110,23 @@ pub struct Fronds {
     pub leaflet: f32,
     /// Width of a leaflet over its length.
     pub slender: f32,
+    /// Degrees around the place's front that they grow in; 360: all around.
+    pub arc: f32,
     /// Chart colour.
     pub color: u32,
 }
 
-/// An indoor palm: long fronds that arch from the ground.
-pub const PALM: Fronds =
-    Fronds { count: 13, length: 46.0, rise: 78.0, droop: 95.0, leaflet: 0.32, slender: 0.11, color: 0x4C7A38 };
-
-/// A fern: a fountain of short fronds.
-pub const FERN: Fronds =
-    Fronds { count: 26, length: 17.0, rise: 66.0, droop: 105.0, leaflet: 0.17, slender: 0.24, color: 0x5C8F3E };
+/// A kentia palm: long fronds with long narrow leaflets that arch from the ground.
+pub const KENTIA: Fronds = Fronds {
+    count: 13,
+    length: 92.0,
+    rise: 84.0,
+    droop: 95.0,
+    leaflet: 0.5,
+    slender: 0.05,
+    arc: 200.0,
+    color: 0x4C7A38,
+};
 
 /// A plant of fronds around the place's origin, where the earth is.
 pub fn fronds(stage: &mut Stage, place: Place, kind: Fronds, triangles: usize, seed: u32) {
@@ -111,7 +139,7 @@ pub fn fronds(stage: &mut Stage, place: Place, kind: Fronds, triangles: usize, s
         let inner = k as f32 / kind.count as f32;
         let length = kind.length * (0.72 + 0.28 * inner) * dice.between(0.9, 1.0);
         let rise = kind.rise - 32.0 * (1.0 - inner) + dice.between(-6.0, 6.0);
-        let at = place.yaw(GOLDEN_ANGLE * k as f32).shift(0.0, 0.0, 0.015 * kind.length);
+        let at = place.yaw(around(k, kind.arc)).shift(0.0, 0.0, 0.015 * kind.length);
         // An arc in the yz plane, by its turning direction.
         let pieces = 10;
         let mut path = vec![Vec3::ZERO];
@@ -149,26 +177,6 @@ pub fn fronds(stage: &mut Stage, place: Place, kind: Fronds, triangles: usize, s
     stage.mesh("fronds", green, ribs);
 }
 
-/// A clump of stiff upright blades (mother-in-law's tongue).
-pub fn swords(stage: &mut Stage, place: Place, height: f32, count: usize, triangles: usize, seed: u32) {
-    let green = stage.paint("sword-leaf", 0x5E7F48, Finish::Satin(0.3));
-    let mut part = Part::default();
-    for (k, share) in shares(triangles, count).enumerate() {
-        let mut dice = Dice::new(131 + u64::from(seed), k as u32);
-        let out = 0.11 * height * (k as f32 / count as f32).sqrt();
-        let length = height * dice.between(0.65, 1.0);
-        let shape =
-            LeafShape { length, width: 0.1 * height, widest: 0.35, droop: dice.between(-4.0, 14.0), fold: 22.0 };
-        let at = place
-            .yaw(GOLDEN_ANGLE * k as f32)
-            .shift(0.0, 0.0, out)
-            .pitch(-dice.between(76.0, 88.0))
-            .roll(dice.between(-12.0, 12.0));
-        part.add(leaf(shape, share).placed(at));
-    }
-    stage.mesh("sword-leaves", green, part);
-}
-
 /// A tuft of grass-like blades that hang over (spider plant).
 pub fn tuft(stage: &mut Stage, place: Place, length: f32, count: usize, triangles: usize, seed: u32) {
     let green = stage.paint("tuft", 0x86AC5A, Finish::Satin(0.4));
@@ -186,6 +194,26 @@ pub fn tuft(stage: &mut Stage, place: Place, length: f32, count: usize, triangle
         part.add(blade(shape, share).placed(at));
     }
     stage.mesh("tuft", green, part);
+}
+
+/// Fountain grass: a clump of long narrow blades within `arc` degrees around the place's front, upright at the sides and
+/// arching over in front.
+pub fn grass(stage: &mut Stage, place: Place, [length, arc]: [f32; 2], triangles: usize, seed: u32) {
+    let green = stage.paint("grass", 0x86A05A, Finish::Satin(0.4));
+    let mut part = Part::default();
+    for (k, share) in shares(triangles, triangles / 2).enumerate() {
+        let mut dice = Dice::new(191 + u64::from(seed), k as u32);
+        let shape = LeafShape {
+            length: length * dice.between(0.55, 1.0),
+            width: 0.013 * length,
+            widest: 0.4,
+            droop: dice.between(40.0, 120.0),
+            fold: 0.0,
+        };
+        let at = place.yaw(around(k, arc)).shift(0.0, 0.0, dice.between(0.0, 0.1) * length);
+        part.add(blade(shape, share).placed(at.pitch(-dice.between(45.0, 86.0)).roll(dice.between(-20.0, 20.0))));
+    }
+    stage.mesh("grass", green, part);
 }
 
 /// A trailing plant: vines that run over the pot's rim at `radius` and hang down by up to `drop`.
@@ -229,6 +257,51 @@ pub fn ivy(stage: &mut Stage, place: Place, radius: f32, drop: f32, vines: usize
         left,
     );
     stage.mesh("ivy", green, stems.and(foliage));
+}
+
+/// Bamboo in a pot: upright canes that arch out at the top, with sprays of narrow leaves that hang from thin twigs.
+/// They lean out by up to `spread` at the top, within `arc` degrees around the place's front.
+pub fn bamboo(stage: &mut Stage, place: Place, [spread, height, arc]: [f32; 3], triangles: usize, seed: u32) {
+    let canes = 7;
+    let mut wood = Part::default();
+    let mut spots = Vec::new();
+    let sprays = (triangles.saturating_sub(canes * 72) / (canes * 15)).max(2);
+    for k in 0..canes {
+        let mut dice = Dice::new(181 + u64::from(seed), k as u32);
+        let at = place.yaw(around(k, arc)).shift(0.0, 0.0, dice.between(0.01, 0.05) * height);
+        let (reach, lean) = (height * dice.between(0.72, 1.0), spread * dice.between(0.4, 1.0));
+        let path = curve(
+            &[[0.0, 0.0, 0.0], [0.0, 0.45 * reach, 0.12 * lean], [0.0, 0.8 * reach, 0.45 * lean], [0.0, reach, lean]],
+            3,
+        );
+        wood.add(tube(&path, 4, Ends::Open, |s| height * (0.009 - 0.006 * s)).placed(at));
+        for j in 0..sprays {
+            let t = (0.22 + 0.78 * (j as f32 + 0.5) / sprays as f32) * (path.len() - 1) as f32;
+            let i = (t as usize).min(path.len() - 2);
+            let p = path[i] + (path[i + 1] - path[i]) * (t - i as f32);
+            let length = height * dice.between(0.1, 0.17);
+            let twig =
+                Place::at(p.x, p.y, p.z).within(at).yaw(GOLDEN_ANGLE * j as f32).pitch(-dice.between(15.0, 50.0));
+            spots.push((twig, length, 0.03));
+            for leaf in 0..4 {
+                let out = length * (0.4 + 0.2 * leaf as f32);
+                let turn = if leaf % 2 == 0 { 1.0 } else { -1.0 } * dice.between(12.0, 55.0);
+                let at = twig.shift(0.0, 0.0, out).yaw(turn).pitch(dice.between(35.0, 95.0));
+                spots.push((at, height * dice.between(0.07, 0.12), 0.11));
+            }
+        }
+    }
+    let cane = stage.paint("bamboo-cane", 0x8C9A4E, Finish::Satin(0.2));
+    let left = triangles.saturating_sub(wood.triangle_count());
+    stage.mesh("bamboo-canes", cane, wood);
+    let green = stage.paint("bamboo-leaf", 0x6C9A45, Finish::Satin(0.2));
+    let mut foliage = Part::default();
+    for (&(at, length, slender), count) in spots.iter().zip(shares(left, spots.len())) {
+        let droop = if slender < 0.05 { 20.0 } else { 25.0 };
+        let shape = LeafShape { length, width: slender * length, widest: 0.4, droop, fold: 0.0 };
+        foliage.add(blade(shape, count).placed(at));
+    }
+    stage.mesh("bamboo-leaves", green, foliage);
 }
 
 /// A garden shrub: a cloud of leaves on branches, `size` wide and high.

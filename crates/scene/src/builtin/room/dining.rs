@@ -7,19 +7,25 @@ use crate::builtin::furniture::{ceramics, lamps, objects, plants, seats, shelves
 
 /// Adds to the living room up to `target` triangles.
 pub fn add(stage: &mut Stage, target: usize) {
-    let table = Place::at(-53.0, FLOOR, 12.0);
+    let table = Place::at(-46.0, FLOOR, 12.0);
     dining_group(stage, table);
     lamps::pendant(stage, table.shift(0.0, CEILING - FLOOR, 0.0), 38.0, 0x2F4F4A, 42.0);
     back_wall(stage);
 
     let grey = stage.paint("grey-glaze", 0x7E8583, Finish::Gloss);
-    plants::pot(stage, Place::at(-76.0, FLOOR, -12.0), 6.5, 12.0, grey);
-    plants::pot(stage, Place::at(-54.0, FLOOR, -80.0), 5.0, 9.0, grey);
-    let mut left = shares(stage.missing_to(target), 40);
-    let [swords, fern, bouquet, near, far, door] = [5, 8, 3, 9, 8, 7].map(|n| left.by_ref().take(n).sum());
-    plants::swords(stage, Place::at(-54.0, FLOOR + 7.7, -80.0), 30.0, 42, swords, 2);
-    plants::fronds(stage, Place::at(-76.0, FLOOR + 10.2, -12.0), plants::FERN, fern, 2);
-    plants::sprig(stage, table.shift(0.0, tables::DINING_TABLE_TOP + 9.6, 0.0), 9, 9.0, bouquet);
+    let side = Place::at(70.0, FLOOR, -27.0).yaw(-90.0);
+    plants::pot(stage, side, 5.4, 12.0, grey);
+    let front = Place::at(-64.0, FLOOR, 68.0).yaw(135.0);
+    plants::pot(stage, front, 7.6, 13.0, grey);
+    let basket = plants::hanging_pot(stage, Place::at(50.0, CEILING, -8.0), 24.0);
+    let n = [12, 1, 14, 8, 6, 6, 6];
+    let mut left = shares(stage.missing_to(target), n.iter().sum());
+    let [kentia, grass, bamboo, bouquet, near, far, door] = n.map(|n| left.by_ref().take(n).sum());
+    let short = plants::Fronds { length: 56.0, ..plants::KENTIA };
+    plants::fronds(stage, front.shift(0.0, 11.1, 0.0), short, kentia, 5);
+    plants::grass(stage, basket, [34.0, 360.0], grass, 6);
+    plants::bamboo(stage, side.shift(0.0, 10.2, 0.0), [44.0, 80.0, 180.0], bamboo, 4);
+    plants::sprig(stage, table.shift(0.0, tables::DINING_TABLE_TOP + 9.6, 0.0), 13, 16.0, bouquet);
     // In the garden, before the window and the terrace door.
     plants::shrub(stage, Place::at(-104.0, 0.0, -72.0), [24.0, 44.0], 0x5F7F46, near, 3);
     plants::shrub(stage, Place::at(-103.0, 0.0, -34.0), [26.0, 36.0], 0x6F8F4A, far, 4);
@@ -30,8 +36,8 @@ pub fn add(stage: &mut Stage, target: usize) {
 fn dining_group(stage: &mut Stage, table: Place) {
     let (walnut, oak) = (stage.walnut(), stage.oak());
     tables::dining_table(stage, table, oak, 48.0, 30.0);
-    let cloth =
-        stage.printed("rust-cloth", [6.0, 6.0], Finish::Matte, || bitmap::weave(63, hex(0xB4623E), hex(0xA2553A)));
+    let cloth = stage
+        .printed("rust-leather", [6.0, 6.0], Finish::Satin(0.3), || bitmap::weave(63, hex(0xB4623E), hex(0xA2553A)));
     let white = stage.paint("white-glaze", 0xE9E5DB, Finish::Gloss);
     let top = table.shift(0.0, tables::DINING_TABLE_TOP, 0.0);
     for (x, side) in [(-12.5, 1.0f32), (12.5, 1.0), (-12.5, -1.0), (12.5, -1.0)] {

@@ -16,16 +16,22 @@ pub fn add(stage: &mut Stage, target: usize) {
     lamps::ceiling_lamp(stage, Place::at(-8.0, CEILING, -20.0), 11.0, 140.0);
     lamps::floor_lamp(stage, Place::at(36.0, FLOOR, -77.0), 110.0);
 
-    let terracotta = stage.paint("terracotta", 0xB0653F, Finish::Matte);
+    let terracotta = stage.paint("terracotta", 0xB0653F, Finish::Satin(0.3));
     let cream = stage.paint("cream-glaze", 0xE3D9C2, Finish::Gloss);
-    plants::pot(stage, Place::at(-72.0, FLOOR, -79.0), 8.0, 14.0, cream);
-    plants::pot(stage, Place::at(76.0, FLOOR, -62.0), 6.6, 12.0, terracotta);
+    let corner = Place::at(-72.0, FLOOR, -79.0).yaw(45.0);
+    plants::pot(stage, corner, 8.0, 14.0, cream);
+    let right = Place::at(72.0, FLOOR, -58.0).yaw(-90.0);
+    plants::pot(stage, right, 7.6, 13.0, terracotta);
+    let window = Place::at(-72.0, FLOOR, -8.0).yaw(90.0);
+    plants::pot(stage, window, 5.8, 12.0, terracotta);
     let sill = Place::at(-HALF_WIDTH + 2.6, WINDOW_Y[0] - 0.6, -24.0);
     plants::pot(stage, sill, 2.4, 4.4, terracotta);
-    let mut left = shares(stage.missing_to(target), 20);
-    let [palm, rubber, tuft] = [9, 8, 3].map(|n| left.by_ref().take(n).sum());
-    plants::fronds(stage, Place::at(-72.0, FLOOR + 11.9, -79.0), plants::PALM, palm, 1);
-    plants::rubber_plant(stage, Place::at(76.0, FLOOR + 10.1, -62.0), 44.0, rubber, 1);
+    let n = [1, 7, 8, 1];
+    let mut left = shares(stage.missing_to(target), n.iter().sum());
+    let [grass, palm, bamboo, tuft] = n.map(|n| left.by_ref().take(n).sum());
+    plants::grass(stage, corner.shift(0.0, 11.9, 0.0), [58.0, 110.0], grass, 1);
+    plants::fronds(stage, right.shift(0.0, 11.1, 0.0), plants::KENTIA, palm, 2);
+    plants::bamboo(stage, window.shift(0.0, 10.2, 0.0), [52.0, 84.0, 200.0], bamboo, 3);
     plants::tuft(stage, sill.shift(0.0, 3.7, 0.0), 11.0, 90, tuft, 1);
 }
 
@@ -34,7 +40,7 @@ fn seating(stage: &mut Stage) {
     let linen = stage.printed("linen", [6.0, 6.0], Finish::Matte, || bitmap::weave(61, hex(0xC4B79F), hex(0xB3A58C)));
     seats::sofa(stage, Place::at(-18.0, FLOOR, -68.5), 3, linen);
     let teal =
-        stage.printed("teal-cloth", [6.0, 6.0], Finish::Matte, || bitmap::weave(62, hex(0x3F7378), hex(0x356468)));
+        stage.printed("teal-cloth", [6.0, 6.0], Finish::Satin(0.3), || bitmap::weave(62, hex(0x3F7378), hex(0x356468)));
     seats::sofa(stage, Place::at(37.0, FLOOR, -31.0).yaw(-62.0), 1, teal);
     let rust =
         stage.printed("rust-cloth", [6.0, 6.0], Finish::Matte, || bitmap::weave(63, hex(0xB4623E), hex(0xA2553A)));

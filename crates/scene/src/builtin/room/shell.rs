@@ -41,9 +41,9 @@ pub fn build(stage: &mut Stage) {
         .printed("floor-boards", [72.0, 72.0], Finish::Satin(0.3), || bitmap::planks(51, hex(0xB58755), hex(0x7D5532)));
     stage.mesh("floor", boards, cuboid([-w, 0.0, -d], [w, FLOOR, d], Faces::NoBottom));
 
-    let plaster = stage.diffuse("plaster", linear(0xD9CFBD));
-    let sage = stage.diffuse("sage", linear(0x97A892));
-    let white = stage.diffuse("ceiling-white", linear(0xE4E0D6));
+    let plaster = stage.paint("plaster", 0xD9CFBD, Finish::Satin(0.3));
+    let sage = stage.paint("sage", 0x97A892, Finish::Satin(0.3));
+    let white = stage.paint("ceiling-white", 0xE4E0D6, Finish::Satin(0.3));
     let slab = |min: [f32; 3], max: [f32; 3]| cuboid(min, max, Faces::NoBottom);
     stage.mesh("back-wall", sage, slab([-w, 0.0, -d - WALL], [w, CEILING, -d]));
     stage.mesh("right-wall", plaster, slab([w, 0.0, -d - WALL], [w + WALL, CEILING, d + WALL]));

@@ -1,0 +1,85 @@
+//! The thesis's workload: rooms 1 to 4 make as many rays, searches and tests as the thesis's four test models did
+//! (Hoggins 2010, tables 8, 10, 20 and 28), at its settings and on a smaller picture.
+
+mod common;
+
+use common::{json, run};
+
+/// How far each figure may lie from the thesis's.
+const TOLERANCE: f64 = 0.15;
+/// Pixels of the thesis's pictures.
+const PIXELS: f64 = 800.0 * 600.0;
+
+/// What the thesis counted in a rendering.
+struct Workload {
+    scene: &'static str,
+    /// Table 20; photons' rays with the viewer's.
+    rays: f64,
+    /// Table 10.
+    tests: f64,
+    /// Table 8, for 50,000 photons and a radius of 20.
+    stored: f64,
+    found: f64,
+}
+
+const THESIS: [Workload; 4] = [
+    Workload { scene: "room-1", rays: 2_911_071.0, tests: 7.985e7, stored: 65_756.0, found: 85.686 },
+    Workload { scene: "room-2", rays: 3_208_094.0, tests: 9.753e7, stored: 71_049.0, found: 90.444 },
+    Workload { scene: "room-3", rays: 3_451_328.0, tests: 1.293e8, stored: 70_497.0, found: 88.909 },
+    Workload { scene: "room-4", rays: 3_674_338.0, tests: 1.317e8, stored: 70_583.0, found: 86.710 },
+];
+
+/// Searches of a ray; the thesis gives their number for its first room alone (table 28).
+const SEARCHES_PER_RAY: f64 = 2_294_307.0 / 2_911_071.0;
+
+/// The thesis's settings but for the picture's size.
+const SETTINGS: &[&str] = &[
+    "--mode",
+    "direct",
+    "--size",
+    "120x90",
+    "--photons",
+    "50000",
+    "--radius",
+    "20",
+    "--knn",
+    "100",
+    "--surface-model",
+    "fixed",
+    "--passes",
+    "1",
+    "--profile-every",
+    "1",
+    "--accel",
+    "kd-tree",
+    "--intersect",
+    "badouel",
+    "--search",
+    "kd-balanced",
+    "--quiet",
+    "--json",
+    "-o",
+    "a.exr",
+];
+
+#[test]
+fn rooms_make_the_workload_of_the_thesis() {
+    for thesis in &THESIS {
+        let stats = json(&run(&[&["render", thesis.scene], SETTINGS].concat()));
+        let number = |group: &str, field: &str| stats[group][field].as_f64().unwrap();
+        // Eye rays and their searches go with the pixels, photons do not.
+        let scale = PIXELS / (120.0 * 90.0);
+        let photon_rays = number("rays", "photon");
+        let rays = (number("rays", "total") - photon_rays) * scale + photon_rays;
+        for (what, here, there) in [
+            ("rays", rays, thesis.rays),
+            ("searches", number("search", "searches") * scale, SEARCHES_PER_RAY * thesis.rays),
+            ("photons stored", number("photons", "stored"), thesis.stored),
+            ("photons found of a search", number("search", "photons_found_mean"), thesis.found),
+            ("tests of a ray", number("intersect", "tests_per_ray"), thesis.tests / thesis.rays),
+        ] {
+            let ratio = here / there;
+            assert!((ratio - 1.0).abs() < TOLERANCE, "{}: {what}: {here} for {there}: {ratio:.3}", thesis.scene);
+        }
+    }
+}
