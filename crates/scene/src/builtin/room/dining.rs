@@ -17,13 +17,13 @@ pub fn add(stage: &mut Stage, target: usize) {
     plants::pot(stage, side, 5.4, 12.0, grey);
     let front = Place::at(-64.0, FLOOR, 68.0).yaw(135.0);
     plants::pot(stage, front, 7.6, 13.0, grey);
-    let basket = plants::hanging_pot(stage, Place::at(50.0, CEILING, -8.0), 24.0);
+    let basket = plants::hanging_pot(stage, Place::at(50.0, CEILING, -8.0), 40.0);
     let n = [12, 1, 14, 8, 6, 6, 6];
     let mut left = shares(stage.missing_to(target), n.iter().sum());
     let [kentia, grass, bamboo, bouquet, near, far, door] = n.map(|n| left.by_ref().take(n).sum());
     let short = plants::Fronds { length: 56.0, ..plants::KENTIA };
     plants::fronds(stage, front.shift(0.0, 11.1, 0.0), short, kentia, 5);
-    plants::grass(stage, basket, [34.0, 360.0], grass, 6);
+    plants::grass(stage, basket, [30.0, 360.0], grass, 6);
     plants::bamboo(stage, side.shift(0.0, 10.2, 0.0), [44.0, 80.0, 180.0], bamboo, 4);
     plants::sprig(stage, table.shift(0.0, tables::DINING_TABLE_TOP + 9.6, 0.0), 13, 16.0, bouquet);
     // In the garden, before the window and the terrace door.

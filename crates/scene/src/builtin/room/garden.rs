@@ -21,7 +21,7 @@ pub fn light(stage: &mut Stage) {
         let post = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.5], [1.2, 4.0], [1.0, 64.0], [3.0, 66.0], [0.0, 66.0]];
         stage.mesh("lantern-post", iron, revolve(&post, 10).placed(foot));
         stage.lamp("lantern", glass, revolve(&ball(GLOBE, 74.0, 6), 12).placed(foot), RADIANCE);
-        let hat = [[20.0, 77.0], [20.5, 77.6], [6.0, 86.0], [0.0, 87.0]];
+        let hat = [[20.5, 77.6], [6.0, 86.0], [0.0, 87.0]];
         let under = [[0.0, 84.0], [5.0, 83.5], [20.0, 77.0]];
         let outline: Vec<[f32; 2]> = under.into_iter().chain(hat).collect();
         stage.mesh("lantern-hat", white, revolve(&outline, 16).placed(foot));
