@@ -256,6 +256,21 @@ fn rooms_have_the_extents_of_the_thesis() {
     }
 }
 
+/// What stands or hangs in a room stays under its ceiling.
+#[test]
+fn nothing_pokes_through_the_ceiling_of_a_room() {
+    let ceiling = 98.4;
+    for (entry, scene) in built().filter(|(entry, _)| entry.name.starts_with("room-")) {
+        for (name, mesh) in
+            meshes(scene).filter(|(name, _)| !["ceiling", "front-wall", "left-wall", "right-wall"].contains(name))
+        {
+            for p in mesh.positions.iter().filter(|p| p.x.abs() < 84.0 && p.z.abs() < 90.0) {
+                assert!(p.y < ceiling + 1e-3, "{}: {name}: {p}", entry.name);
+            }
+        }
+    }
+}
+
 /// A stage of the room keeps all shapes of the one before.
 #[test]
 fn rooms_grow_out_of_one_another() {

@@ -95,6 +95,9 @@ pub fn leaf(shape: LeafShape, triangles: usize) -> Part {
 }
 
 /// A narrow blade of exactly `triangles` triangles (at least 1): a strip that tapers to its tip.
+///
+/// Its shading normals are those of the arc: a strip of few triangles zigzags about it, and the mean of its faces' normals
+/// can lie behind one of them. They lie before the faces where the droop is less than 90 degrees a triangle.
 pub fn blade(shape: LeafShape, triangles: usize) -> Part {
     let mut part = Part::default();
     let last = triangles + 1;
@@ -108,7 +111,7 @@ pub fn blade(shape: LeafShape, triangles: usize) -> Part {
     for i in 0..triangles as u32 {
         if i % 2 == 0 { part.triangle(i, i + 2, i + 1) } else { part.triangle(i, i + 1, i + 2) }
     }
-    part.smoothed()
+    part
 }
 
 /// A petal that grows along +z from the origin and curls up (+y) towards its pointed tip; 2 `nu` `nv` - `nu`

@@ -276,12 +276,15 @@ pub fn bamboo(stage: &mut Stage, place: Place, [spread, height, arc]: [f32; 3], 
         );
         wood.add(tube(&path, 4, Ends::Open, |s| height * (0.009 - 0.006 * s)).placed(at));
         for j in 0..sprays {
-            let t = (0.22 + 0.78 * (j as f32 + 0.5) / sprays as f32) * (path.len() - 1) as f32;
+            let up = 0.22 + 0.78 * (j as f32 + 0.5) / sprays as f32;
+            let t = up * (path.len() - 1) as f32;
             let i = (t as usize).min(path.len() - 2);
             let p = path[i] + (path[i + 1] - path[i]) * (t - i as f32);
             let length = height * dice.between(0.1, 0.17);
-            let twig =
-                Place::at(p.x, p.y, p.z).within(at).yaw(GOLDEN_ANGLE * j as f32).pitch(-dice.between(15.0, 50.0));
+            let twig = Place::at(p.x, p.y, p.z)
+                .within(at)
+                .yaw(GOLDEN_ANGLE * j as f32)
+                .pitch(-dice.between(15.0, 50.0) * (1.0 - up));
             spots.push((twig, length, 0.03));
             for leaf in 0..4 {
                 let out = length * (0.4 + 0.2 * leaf as f32);

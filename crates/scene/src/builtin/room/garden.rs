@@ -9,7 +9,7 @@ const LANTERNS: [[f32; 2]; 6] =
 /// Radius of a globe.
 const GLOBE: f32 = 7.0;
 /// Its radiance, W/m²/sr.
-const RADIANCE: [f32; 3] = [90.0, 76.5, 55.8];
+const RADIANCE: [f32; 3] = [5.0, 4.25, 3.1];
 
 /// Adds the lanterns: a post, a glowing globe and a hat that throws its light down.
 pub fn light(stage: &mut Stage) {
