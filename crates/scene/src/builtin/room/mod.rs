@@ -4,6 +4,7 @@
 //! Each stage is brought to its exact number of triangles by the leaves of its last plants.
 
 mod dining;
+mod garden;
 mod living;
 mod music;
 mod shell;
@@ -38,6 +39,7 @@ pub fn room_4() -> Scene {
 fn furnished(stages: usize) -> Scene {
     let mut stage = Stage::waxed();
     shell::build(&mut stage);
+    garden::light(&mut stage);
     let add = [living::add, dining::add, music::add, winter::add];
     for (add, target) in add.into_iter().zip(TRIANGLES).take(stages) {
         add(&mut stage, target);
