@@ -36,8 +36,6 @@ const SEARCHES_PER_RAY: f64 = 2_294_307.0 / 2_911_071.0;
 const SETTINGS: &[&str] = &[
     "--mode",
     "direct",
-    "--size",
-    "120x90",
     "--photons",
     "50000",
     "--radius",
@@ -62,21 +60,27 @@ const SETTINGS: &[&str] = &[
     "a.exr",
 ];
 
+/// Two sizes of pictures; counts grow with the pixels from what the photons make of them.
+const SIZES: [(&str, f64); 2] = [("12x9", 108.0), ("120x90", 10_800.0)];
+
 #[test]
 fn rooms_make_the_workload_of_the_thesis() {
     for thesis in &THESIS {
-        let stats = json(&run(&[&["render", thesis.scene], SETTINGS].concat()));
+        let [few, stats] =
+            SIZES.map(|(size, _)| json(&run(&[&["render", thesis.scene, "--size", size], SETTINGS].concat())));
         let number = |group: &str, field: &str| stats[group][field].as_f64().unwrap();
-        // Eye rays and their searches go with the pixels, photons do not.
-        let scale = PIXELS / (120.0 * 90.0);
-        let photon_rays = number("rays", "photon");
-        let rays = (number("rays", "total") - photon_rays) * scale + photon_rays;
+        let at_full_size = |group: &str, field: &str| {
+            let [small, large] = [&few, &stats].map(|stats| stats[group][field].as_f64().unwrap());
+            let a_pixel = (large - small) / (SIZES[1].1 - SIZES[0].1);
+            large + a_pixel * (PIXELS - SIZES[1].1)
+        };
+        let rays = at_full_size("rays", "total");
         for (what, here, there) in [
             ("rays", rays, thesis.rays),
-            ("searches", number("search", "searches") * scale, SEARCHES_PER_RAY * thesis.rays),
+            ("searches", at_full_size("search", "searches"), SEARCHES_PER_RAY * thesis.rays),
             ("photons stored", number("photons", "stored"), thesis.stored),
             ("photons found of a search", number("search", "photons_found_mean"), thesis.found),
-            ("tests of a ray", number("intersect", "tests_per_ray"), thesis.tests / thesis.rays),
+            ("tests of a ray", at_full_size("intersect", "tests") / rays, thesis.tests / thesis.rays),
         ] {
             let ratio = here / there;
             assert!((ratio - 1.0).abs() < TOLERANCE, "{}: {what}: {here} for {there}: {ratio:.3}", thesis.scene);

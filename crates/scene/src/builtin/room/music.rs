@@ -27,7 +27,7 @@ pub fn add(stage: &mut Stage, target: usize) {
     plants::pot(stage, front, 6.0, 12.0, terracotta);
     let low = Place::at(-70.0, FLOOR, 44.0);
     plants::pot(stage, low, 6.6, 10.6, terracotta);
-    let n = [11, 11, 4, 7, 7, 14, 3];
+    let n = [11, 11, 4, 8, 8, 14, 1];
     let mut left = shares(stage.missing_to(target), n.iter().sum());
     let [ivy_a, ivy_b, ivy_c, lawn, hedge, bamboo, grass] = n.map(|n| left.by_ref().take(n).sum());
     plants::ivy(stage, baskets[0], 5.2, 26.0, 16, ivy_a, 6);

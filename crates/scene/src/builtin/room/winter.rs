@@ -27,7 +27,7 @@ pub fn add(stage: &mut Stage, target: usize) {
     let right = Place::at(74.0, FLOOR, 66.0).yaw(-135.0);
     plants::pot(stage, right, 7.6, 13.0, cream);
     let hook = plants::hanging_pot(stage, Place::at(-6.0, CEILING, -2.0), 16.0);
-    let n = [4, 4, 3, 9, 13, 10, 5, 5, 4];
+    let n = [4, 4, 3, 7, 9, 13, 5, 6, 6];
     let mut left = shares(stage.missing_to(target), n.iter().sum());
     let [sprig, tuft, sill, bamboo, ivy, near, far, tall, hedge] = n.map(|n| left.by_ref().take(n).sum());
     plants::sprig(stage, floor_vase.shift(0.0, 24.0, 0.0), 15, 24.0, sprig);
