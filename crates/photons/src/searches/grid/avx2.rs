@@ -22,7 +22,7 @@ const HALF: usize = 8;
 pub(crate) fn kernels() -> Option<VectorKernels> {
     let has_all =
         is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
-    has_all.then_some(VectorKernels { name: "avx2", cull, prefetch, gather, select, scan, kth })
+    has_all.then_some(VectorKernels { name: "avx2", cull, prefetch, gather, select, scan, kth, gather_selected })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
@@ -56,9 +56,9 @@ fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut Norm
     }
 }
 
-fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec<Selected>) {
+fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut NormalMemo, found: &mut Vec<Selected>) {
     // SAFETY: as above.
-    unsafe { select_blocks(blocks, hits, query, found) }
+    unsafe { select_blocks(blocks, hits, query, memo, found) }
 }
 
 fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
@@ -66,16 +66,21 @@ fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2
     unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
 }
 
-fn kth(
-    blocks: &[Block],
-    hits: &mut Vec<u32>,
-    query: &PreparedQuery,
-    k: usize,
-    memo: &mut NormalMemo,
-    distances_sq: &mut Vec<f32>,
-) -> Option<f32> {
+fn kth(selected: &[Selected], k: usize, distances: &mut Vec<f32>) -> f32 {
     // SAFETY: as above.
-    unsafe { kth_distance(blocks, hits, query, k, memo, distances_sq) }
+    unsafe { kth_distance(selected, k, distances) }
+}
+
+fn gather_selected(blocks: &[Block], selected: &[Selected], query: &PreparedQuery) -> Gathered {
+    // SAFETY: as above.
+    unsafe {
+        match kernel_index(query.kernel.kernel) {
+            CONSTANT => selected_kernel::<CONSTANT>(blocks, selected, query),
+            CONE => selected_kernel::<CONE>(blocks, selected, query),
+            EPANECHNIKOV => selected_kernel::<EPANECHNIKOV>(blocks, selected, query),
+            _ => selected_kernel::<GAUSSIAN>(blocks, selected, query),
+        }
+    }
 }
 
 /// Half of a block's field as a vector.
@@ -243,6 +248,49 @@ impl<'a> Inclusion<'a> {
     }
 }
 
+/// Weighted flux by lane.
+struct Sums<const KERNEL: u8> {
+    inv_r2: __m256,
+    inv_k: __m256,
+    mantissa_masks: [__m256i; 3],
+    flux: [[__m256; 2]; 3],
+    count: u32,
+}
+
+impl<const KERNEL: u8> Sums<KERNEL> {
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt")]
+    fn new(query: &PreparedQuery) -> Self {
+        Self {
+            inv_r2: _mm256_set1_ps(query.kernel.inv_r2),
+            inv_k: _mm256_set1_ps(query.kernel.inv_k),
+            mantissa_masks: MANTISSA_MASKS.map(|mask| _mm256_set1_epi32(mask as i32)),
+            flux: [[_mm256_setzero_ps(); 2]; 3],
+            count: 0,
+        }
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt")]
+    fn add(&mut self, block: &Block, half: usize, found: __m256, d2: __m256) {
+        let flux = words(&block.flux, half);
+        let scale = _mm256_and_si256(_mm256_srli_epi32::<2>(flux), _mm256_set1_epi32(RAW_SCALE_MASK as i32));
+        let weight = _mm256_mul_ps(_mm256_castsi256_ps(scale), weights::<KERNEL>(d2, self.inv_r2, self.inv_k));
+        for (sum, mask) in self.flux.iter_mut().zip(self.mantissa_masks) {
+            let mantissa = _mm256_cvtepi32_ps(_mm256_and_si256(flux, mask));
+            // Sums are never -0, so that adding +0 in the other lanes leaves them as they are.
+            sum[half] = _mm256_add_ps(sum[half], _mm256_and_ps(found, _mm256_mul_ps(mantissa, weight)));
+        }
+        self.count += _mm256_movemask_ps(found).count_ones();
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt")]
+    fn gathered(self) -> Gathered {
+        Gathered { flux: Vec3::from_array(self.flux.map(|sum| tree_sum(sum))) * PLACED_UNITS, count: self.count }
+    }
+}
+
 #[target_feature(enable = "avx2,popcnt,bmi1")]
 fn gather_kernel<const KERNEL: u8>(
     blocks: &[Block],
@@ -251,33 +299,50 @@ fn gather_kernel<const KERNEL: u8>(
     memo: &mut NormalMemo,
 ) -> Gathered {
     let mut inclusion = Inclusion::new(query, memo);
-    let inv_r2 = _mm256_set1_ps(query.kernel.inv_r2);
-    let inv_k = _mm256_set1_ps(query.kernel.inv_k);
-    let mantissa_masks = MANTISSA_MASKS.map(|mask| _mm256_set1_epi32(mask as i32));
-    let mut sums = [[_mm256_setzero_ps(); 2]; 3];
-    let mut count = 0;
+    let mut sums = Sums::<KERNEL>::new(query);
     for block in hits {
         let block = &blocks[*block as usize];
         for half in 0..2 {
             let (found, d2) = inclusion.test(block, half);
-            let flux = words(&block.flux, half);
-            let scale = _mm256_and_si256(_mm256_srli_epi32::<2>(flux), _mm256_set1_epi32(RAW_SCALE_MASK as i32));
-            let weight = _mm256_mul_ps(_mm256_castsi256_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
-            for (sum, mask) in sums.iter_mut().zip(mantissa_masks) {
-                let mantissa = _mm256_cvtepi32_ps(_mm256_and_si256(flux, mask));
-                // Sums are never -0, so that adding +0 in the other lanes leaves them as they are.
-                sum[half] = _mm256_add_ps(sum[half], _mm256_and_ps(found, _mm256_mul_ps(mantissa, weight)));
-            }
-            count += _mm256_movemask_ps(found).count_ones();
+            sums.add(block, half, found, d2);
         }
     }
-    Gathered { flux: Vec3::from_array(sums.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
+    sums.gathered()
+}
+
+/// The lanes of half a block whose bits are set, as masks.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn lane_masks(lanes: u32, half: usize) -> __m256 {
+    let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    let lanes = _mm256_set1_epi32((lanes >> (half * HALF)) as i32);
+    _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(lanes, bits), bits))
 }
 
 #[target_feature(enable = "avx2,popcnt,bmi1")]
-fn select_blocks(blocks: &[Block], hits: &[u32], query: &PreparedQuery, selected: &mut Vec<Selected>) {
-    let mut memo = NormalMemo::NONE;
-    let mut inclusion = Inclusion::new(query, &mut memo);
+fn selected_kernel<const KERNEL: u8>(blocks: &[Block], selected: &[Selected], query: &PreparedQuery) -> Gathered {
+    let r2 = _mm256_set1_ps(query.r2);
+    let mut sums = Sums::<KERNEL>::new(query);
+    for selected in selected {
+        for half in 0..2 {
+            let d2 = floats(&selected.distances_sq, half);
+            let near = _mm256_cmp_ps::<_CMP_LE_OQ>(d2, r2);
+            let found = _mm256_and_ps(near, lane_masks(selected.lanes, half));
+            sums.add(&blocks[selected.block as usize], half, found, d2);
+        }
+    }
+    sums.gathered()
+}
+
+#[target_feature(enable = "avx2,popcnt,bmi1")]
+fn select_blocks(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    memo: &mut NormalMemo,
+    selected: &mut Vec<Selected>,
+) {
+    let mut inclusion = Inclusion::new(query, memo);
     for &block in hits {
         let photons = &blocks[block as usize];
         let [low, high] = [0, 1].map(|half| inclusion.test(photons, half));
@@ -334,27 +399,15 @@ fn scan_blocks(
     }
 }
 
-#[target_feature(enable = "avx2,popcnt,bmi1")]
-fn kth_distance(
-    blocks: &[Block],
-    hits: &mut Vec<u32>,
-    query: &PreparedQuery,
-    k: usize,
-    memo: &mut NormalMemo,
-    distances_sq: &mut Vec<f32>,
-) -> Option<f32> {
-    let mut inclusion = Inclusion::new(query, memo);
-    hits.retain(|block| {
-        let photons = &blocks[*block as usize];
-        let [low, high] = [0, 1].map(|half| inclusion.test(photons, half));
-        let mut lanes = (_mm256_movemask_ps(low.0) | _mm256_movemask_ps(high.0) << HALF) as u32;
-        let has_any = lanes != 0;
-        let d2 = stored([low.1, high.1]);
+#[target_feature(enable = "avx2,bmi1")]
+fn kth_distance(selected: &[Selected], k: usize, distances: &mut Vec<f32>) -> f32 {
+    distances.clear();
+    for selected in selected {
+        let mut lanes = selected.lanes;
         while lanes != 0 {
-            distances_sq.push(d2[lanes.trailing_zeros() as usize]);
+            distances.push(selected.distances_sq[lanes.trailing_zeros() as usize]);
             lanes &= lanes - 1;
         }
-        has_any
-    });
-    (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
+    }
+    kth_least(distances, k)
 }

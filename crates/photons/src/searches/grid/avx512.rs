@@ -19,7 +19,7 @@ use std::ops::Range;
 pub(crate) fn kernels() -> Option<VectorKernels> {
     let has_all =
         is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
-    has_all.then_some(VectorKernels { name: "avx512", cull, prefetch, gather, select, scan, kth })
+    has_all.then_some(VectorKernels { name: "avx512", cull, prefetch, gather, select, scan, kth, gather_selected })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
@@ -53,9 +53,9 @@ fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut Norm
     }
 }
 
-fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec<Selected>) {
+fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, memo: &mut NormalMemo, found: &mut Vec<Selected>) {
     // SAFETY: as above.
-    unsafe { select_blocks(blocks, hits, query, found) }
+    unsafe { select_blocks(blocks, hits, query, memo, found) }
 }
 
 fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2: f32, candidates: &mut Candidates) {
@@ -63,16 +63,21 @@ fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2
     unsafe { scan_blocks(blocks, ids, hits, position, r2, candidates) }
 }
 
-fn kth(
-    blocks: &[Block],
-    hits: &mut Vec<u32>,
-    query: &PreparedQuery,
-    k: usize,
-    memo: &mut NormalMemo,
-    distances_sq: &mut Vec<f32>,
-) -> Option<f32> {
+fn kth(selected: &[Selected], k: usize, distances: &mut Vec<f32>) -> f32 {
     // SAFETY: as above.
-    unsafe { kth_distance(blocks, hits, query, k, memo, distances_sq) }
+    unsafe { kth_distance(selected, k, distances) }
+}
+
+fn gather_selected(blocks: &[Block], selected: &[Selected], query: &PreparedQuery) -> Gathered {
+    // SAFETY: as above.
+    unsafe {
+        match kernel_index(query.kernel.kernel) {
+            CONSTANT => selected_kernel::<CONSTANT>(blocks, selected, query),
+            CONE => selected_kernel::<CONE>(blocks, selected, query),
+            EPANECHNIKOV => selected_kernel::<EPANECHNIKOV>(blocks, selected, query),
+            _ => selected_kernel::<GAUSSIAN>(blocks, selected, query),
+        }
+    }
 }
 
 /// A block's field as a vector.
@@ -258,6 +263,48 @@ impl<'a> Inclusion<'a> {
     }
 }
 
+/// Weighted flux by lane.
+struct Sums<const KERNEL: u8> {
+    inv_r2: __m512,
+    inv_k: __m512,
+    mantissa_masks: [__m512i; 3],
+    flux: [__m512; 3],
+    count: u32,
+}
+
+impl<const KERNEL: u8> Sums<KERNEL> {
+    #[inline]
+    #[target_feature(enable = "avx512f,popcnt")]
+    fn new(query: &PreparedQuery) -> Self {
+        Self {
+            inv_r2: _mm512_set1_ps(query.kernel.inv_r2),
+            inv_k: _mm512_set1_ps(query.kernel.inv_k),
+            mantissa_masks: MANTISSA_MASKS.map(|mask| _mm512_set1_epi32(mask as i32)),
+            flux: [_mm512_setzero_ps(); 3],
+            count: 0,
+        }
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx512f,popcnt")]
+    fn add(&mut self, block: &Block, found: __mmask16, d2: __m512) {
+        let flux = words(&block.flux);
+        let scale = _mm512_and_si512(_mm512_srli_epi32::<2>(flux), _mm512_set1_epi32(RAW_SCALE_MASK as i32));
+        let weight = _mm512_mul_ps(_mm512_castsi512_ps(scale), weights::<KERNEL>(d2, self.inv_r2, self.inv_k));
+        for (sum, mask) in self.flux.iter_mut().zip(self.mantissa_masks) {
+            let mantissa = _mm512_cvtepi32_ps(_mm512_and_si512(flux, mask));
+            *sum = _mm512_mask_add_ps(*sum, found, *sum, _mm512_mul_ps(mantissa, weight));
+        }
+        self.count += found.count_ones();
+    }
+
+    #[inline]
+    #[target_feature(enable = "avx512f,popcnt")]
+    fn gathered(self) -> Gathered {
+        Gathered { flux: Vec3::from_array(self.flux.map(|sum| tree_sum(sum))) * PLACED_UNITS, count: self.count }
+    }
+}
+
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
 fn gather_kernel<const KERNEL: u8>(
     blocks: &[Block],
@@ -266,30 +313,38 @@ fn gather_kernel<const KERNEL: u8>(
     memo: &mut NormalMemo,
 ) -> Gathered {
     let mut inclusion = Inclusion::new(query, memo);
-    let inv_r2 = _mm512_set1_ps(query.kernel.inv_r2);
-    let inv_k = _mm512_set1_ps(query.kernel.inv_k);
-    let mantissa_masks = MANTISSA_MASKS.map(|mask| _mm512_set1_epi32(mask as i32));
-    let mut sums = [_mm512_setzero_ps(); 3];
-    let mut count = 0;
+    let mut sums = Sums::<KERNEL>::new(query);
     for block in hits {
         let block = &blocks[*block as usize];
         let (found, d2) = inclusion.test(block);
-        let flux = words(&block.flux);
-        let scale = _mm512_and_si512(_mm512_srli_epi32::<2>(flux), _mm512_set1_epi32(RAW_SCALE_MASK as i32));
-        let weight = _mm512_mul_ps(_mm512_castsi512_ps(scale), weights::<KERNEL>(d2, inv_r2, inv_k));
-        for (sum, mask) in sums.iter_mut().zip(mantissa_masks) {
-            let mantissa = _mm512_cvtepi32_ps(_mm512_and_si512(flux, mask));
-            *sum = _mm512_mask_add_ps(*sum, found, *sum, _mm512_mul_ps(mantissa, weight));
-        }
-        count += found.count_ones();
+        sums.add(block, found, d2);
     }
-    Gathered { flux: Vec3::from_array(sums.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
+    sums.gathered()
 }
 
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
-fn select_blocks(blocks: &[Block], hits: &[u32], query: &PreparedQuery, selected: &mut Vec<Selected>) {
-    let mut memo = NormalMemo::NONE;
-    let mut inclusion = Inclusion::new(query, &mut memo);
+fn selected_kernel<const KERNEL: u8>(blocks: &[Block], selected: &[Selected], query: &PreparedQuery) -> Gathered {
+    let r2 = _mm512_set1_ps(query.r2);
+    let mut sums = Sums::<KERNEL>::new(query);
+    for selected in selected {
+        let d2 = floats(&selected.distances_sq);
+        let found = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(selected.lanes as u16, d2, r2);
+        if found != 0 {
+            sums.add(&blocks[selected.block as usize], found, d2);
+        }
+    }
+    sums.gathered()
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn select_blocks(
+    blocks: &[Block],
+    hits: &[u32],
+    query: &PreparedQuery,
+    memo: &mut NormalMemo,
+    selected: &mut Vec<Selected>,
+) {
+    let mut inclusion = Inclusion::new(query, memo);
     for &block in hits {
         let (found, d2) = inclusion.test(&blocks[block as usize]);
         if found != 0 {
@@ -340,26 +395,18 @@ fn scan_blocks(
     }
 }
 
-#[target_feature(enable = "avx512f,popcnt,bmi1")]
-fn kth_distance(
-    blocks: &[Block],
-    hits: &mut Vec<u32>,
-    query: &PreparedQuery,
-    k: usize,
-    memo: &mut NormalMemo,
-    distances_sq: &mut Vec<f32>,
-) -> Option<f32> {
-    let mut inclusion = Inclusion::new(query, memo);
-    distances_sq.reserve(hits.len() * LANES + LANES);
-    hits.retain(|block| {
-        let (found, d2) = inclusion.test(&blocks[*block as usize]);
-        // SAFETY: there is room for sixteen a block, of which the first ones, as many as `found` has bits, are kept.
+#[target_feature(enable = "avx512f,popcnt")]
+fn kth_distance(selected: &[Selected], k: usize, distances: &mut Vec<f32>) -> f32 {
+    distances.clear();
+    distances.reserve((selected.len() + 1) * LANES);
+    for selected in selected {
+        let (found, d2) = (selected.lanes as u16, floats(&selected.distances_sq));
+        // SAFETY: there is room for sixteen an entry, of which the first ones, as many as `found` has bits, are kept.
         unsafe {
-            let end = distances_sq.as_mut_ptr().add(distances_sq.len());
+            let end = distances.as_mut_ptr().add(distances.len());
             _mm512_storeu_ps(end, _mm512_maskz_compress_ps(found, d2));
-            distances_sq.set_len(distances_sq.len() + found.count_ones() as usize);
+            distances.set_len(distances.len() + found.count_ones() as usize);
         }
-        found != 0
-    });
-    (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
+    }
+    kth_least(distances, k)
 }

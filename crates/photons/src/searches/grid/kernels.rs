@@ -35,13 +35,15 @@ pub(crate) type Prefetch = fn(&[Block], &[u32]);
 /// Sums what a query finds in these blocks.
 pub(crate) type Gather = fn(&[Block], &[u32], &PreparedQuery, &mut NormalMemo) -> Gathered;
 /// Finds what a query finds in these blocks: one entry for each block with any.
-pub(crate) type Select = fn(&[Block], &[u32], &PreparedQuery, &mut Vec<Selected>);
+pub(crate) type Select = fn(&[Block], &[u32], &PreparedQuery, &mut NormalMemo, &mut Vec<Selected>);
 /// Collects the photons within a squared radius of a position in these blocks; the ids of all blocks come second.
 pub(crate) type Scan = fn(&[Block], &[[u32; LANES]], &[u32], Vec3, f32, &mut Candidates);
 
-/// Collects the squared distances of what a query finds in these blocks and returns the k-th least of them, `None` where
-/// they are fewer than k; k is at least 1. Of the blocks only those with anything found are kept.
-pub(crate) type Kth = fn(&[Block], &mut Vec<u32>, &PreparedQuery, usize, &mut NormalMemo, &mut Vec<f32>) -> Option<f32>;
+/// The k-th least squared distance of photons that were found, of which there are k at least; k is at least 1. The vector
+/// is scratch.
+pub(crate) type Kth = fn(&[Selected], usize, &mut Vec<f32>) -> f32;
+/// Sums the photons that were found up to a query's squared distance.
+pub(crate) type GatherSelected = fn(&[Block], &[Selected], &PreparedQuery) -> Gathered;
 
 /// Kernels for one width of vectors.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +55,7 @@ pub(crate) struct VectorKernels {
     pub(crate) select: Select,
     pub(crate) scan: Scan,
     pub(crate) kth: Kth,
+    pub(crate) gather_selected: GatherSelected,
 }
 
 /// Photons of a block that a query finds.
@@ -63,6 +66,21 @@ pub(crate) struct Selected {
     pub(crate) lanes: u32,
     /// Of every lane, found or not.
     pub(crate) distances_sq: [f32; LANES],
+}
+
+impl Selected {
+    /// Lanes found and their squared distances, in order.
+    #[inline]
+    pub(crate) fn found(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+        let mut lanes = self.lanes;
+        std::iter::from_fn(move || {
+            (lanes != 0).then(|| {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
+                (lane, self.distances_sq[lane])
+            })
+        })
+    }
 }
 
 /// Every set that this processor runs, the fastest first.

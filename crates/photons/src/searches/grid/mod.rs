@@ -30,7 +30,7 @@ use blocks::{Block, Boxes, LANES};
 use build::{Built, build};
 use candidates::Candidates;
 use cells::Cells;
-use kernels::{Selected, VectorKernels};
+use kernels::{NormalMemo, Selected, VectorKernels};
 use narrow::NearestFinder;
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
@@ -78,13 +78,9 @@ impl Grid {
 
     /// Calls `visit` with the selected photons in the order of the blocks.
     fn hand_out(&self, selected: &[Selected], visit: &mut dyn FnMut(&Photon, f32)) {
-        for &Selected { block, mut lanes, distances_sq } in selected {
-            let block = &self.blocks[block as usize];
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros() as usize;
-                visit(&block.photon(lane), distances_sq[lane]);
-                lanes &= lanes - 1;
-            }
+        for selected in selected {
+            let block = &self.blocks[selected.block as usize];
+            selected.found().for_each(|(lane, d2)| visit(&block.photon(lane), d2));
         }
     }
 }
@@ -122,8 +118,8 @@ impl Search for Grid {
         let mut scratch = Scratch::new();
         let prepared = PreparedQuery::new(query, Kernel::Constant);
         self.find_blocks(query.position, query.radius, prepared.r2, &mut scratch);
-        let mut selected = Vec::with_capacity(scratch.hits.len());
-        (self.kernels.select)(&self.blocks, &scratch.hits, &prepared, &mut selected);
+        let (mut memo, mut selected) = (NormalMemo::NONE, Vec::with_capacity(scratch.hits.len()));
+        (self.kernels.select)(&self.blocks, &scratch.hits, &prepared, &mut memo, &mut selected);
         self.hand_out(&selected, visit);
     }
 
@@ -176,9 +172,11 @@ impl Search for Grid {
         found.clear();
         let mut finder = NearestFinder::new();
         let nearest = self.narrow(PreparedQuery::new(query, Kernel::Constant), query.radius, k, &mut finder);
-        let mut selected = Vec::with_capacity(finder.scratch.hits.len());
-        (self.kernels.select)(&self.blocks, &finder.scratch.hits, &nearest, &mut selected);
-        self.hand_out(&selected, &mut |photon, d2| found.push((*photon, d2)));
+        self.hand_out(&finder.selected, &mut |photon, d2| {
+            if d2 <= nearest.r2 {
+                found.push((*photon, d2));
+            }
+        });
         *counters += SearchCounters { searches: 1, photons_tested: finder.tested, photons_found: found.len() as u64 };
     }
 

@@ -1,7 +1,8 @@
-//! Searches for the k nearest: balls about as large as the last one needed, the k-th distance, then sums within it.
+//! Searches for the k nearest: what a ball about as large as the last one needed holds, the k-th distance of it, then sums
+//! up to that.
 
 use super::Grid;
-use super::kernels::NormalMemo;
+use super::kernels::{NormalMemo, Selected};
 use super::reach::Scratch;
 use crate::inclusion::PreparedQuery;
 use crate::kernel::PreparedKernel;
@@ -15,8 +16,10 @@ const ATTEMPTS: u32 = 8;
 
 /// What one search for the nearest hands to the next; results do not depend on it.
 pub(crate) struct NearestFinder {
-    pub(crate) scratch: Scratch,
+    scratch: Scratch,
     memo: NormalMemo,
+    /// What the last query found, more than the nearest.
+    pub(crate) selected: Vec<Selected>,
     distances_sq: Vec<f32>,
     /// Radius that the last query needed; zero before the first.
     last_radius: f32,
@@ -29,6 +32,7 @@ impl NearestFinder {
         Self {
             scratch: Scratch::new(),
             memo: NormalMemo::NONE,
+            selected: Vec::with_capacity(64),
             distances_sq: Vec::with_capacity(512),
             last_radius: 0.0,
             tested: 0,
@@ -37,7 +41,7 @@ impl NearestFinder {
 }
 
 impl Grid {
-    /// Narrows a query of this radius to its `k` nearest photons, and leaves the blocks that hold them in the finder.
+    /// Narrows a query of this radius to its `k` nearest photons, and leaves them, with others, in the finder.
     pub(crate) fn narrow(
         &self,
         mut query: PreparedQuery,
@@ -47,7 +51,7 @@ impl Grid {
     ) -> PreparedQuery {
         let whole = query.r2;
         if k == 0 || !(whole >= 0.0) {
-            finder.scratch.hits.clear();
+            finder.selected.clear();
             query.r2 = -1.0;
             return query;
         }
@@ -59,16 +63,11 @@ impl Grid {
             query.r2 = ball_sq;
             self.find_blocks(query.position, ball, ball_sq, &mut finder.scratch);
             finder.tested += self.photons_in(&finder.scratch);
-            finder.distances_sq.clear();
-            let kth = (self.kernels.kth)(
-                &self.blocks,
-                &mut finder.scratch.hits,
-                &query,
-                k as usize,
-                &mut finder.memo,
-                &mut finder.distances_sq,
-            );
-            if let Some(kth) = kth {
+            finder.selected.clear();
+            (self.kernels.select)(&self.blocks, &finder.scratch.hits, &query, &mut finder.memo, &mut finder.selected);
+            let found = finder.selected.iter().map(|selected| selected.lanes.count_ones()).sum::<u32>();
+            if found >= k {
+                let kth = (self.kernels.kth)(&finder.selected, k as usize, &mut finder.distances_sq);
                 let radius = kth.sqrt();
                 finder.last_radius = radius;
                 query.r2 = kth;
@@ -80,8 +79,7 @@ impl Grid {
                 break;
             }
             // As many photons as were found tell how much wider the ball has to be, on an even surface.
-            let found = finder.distances_sq.len().max(1) as f32;
-            reach *= (1.2 * k as f32 / found).sqrt().clamp(1.1, 4.0);
+            reach *= (1.2 * k as f32 / found.max(1) as f32).sqrt().clamp(1.1, 4.0);
         }
         query
     }
@@ -98,8 +96,8 @@ impl Grid {
         let mut one = |i: usize| {
             let prepared = PreparedQuery::new(&queries[i], kernel);
             let nearest = self.narrow(prepared, queries[i].radius, k, &mut finder);
-            let sums = (self.kernels.gather)(&self.blocks, &finder.scratch.hits, &nearest, &mut finder.memo);
-            let farthest = || finder.distances_sq.iter().fold(0f32, |farthest, d2| farthest.max(*d2));
+            let sums = (self.kernels.gather_selected)(&self.blocks, &finder.selected, &nearest);
+            let farthest = || finder.selected.iter().flat_map(Selected::found).fold(0f32, |most, (_, d2)| most.max(d2));
             let farthest_sq = match sums.count {
                 0 => 0.0,
                 count if count >= k => nearest.r2,

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// These kernels, for any processor.
 pub(crate) const KERNELS: VectorKernels =
-    VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, select, scan, kth };
+    VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, select, scan, kth, gather_selected };
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
     let position = position.to_array();
@@ -29,24 +29,50 @@ fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mu
 /// The photon of a lane adds to that lane's sums, and the sixteen sums of a channel are added in a fixed tree, so
 /// that the result depends neither on the vector width nor on which blocks without a photon in reach are read.
 fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, _: &mut NormalMemo) -> Gathered {
-    let mut sums = [[0f32; LANES]; 3];
-    let mut count = 0;
+    let mut sums = Sums::default();
     for block in hits.iter().map(|block| &blocks[*block as usize]) {
         for (lane, d2) in block.distances_sq(query.position).into_iter().enumerate() {
             if d2 <= query.r2 && query.accepts(block.surface[lane]) {
-                let word = block.flux[lane];
-                let weight = raw_scale(word) * query.kernel.weight(d2);
-                for (sum, mantissa) in sums.iter_mut().zip(placed_mantissas(word).to_array()) {
-                    sum[lane] += mantissa * weight;
-                }
-                count += 1;
+                sums.add(block, lane, d2, query);
             }
         }
     }
-    Gathered { flux: Vec3::from_array(sums.map(tree_sum)) * PLACED_UNITS, count }
+    sums.gathered()
 }
 
-fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, found: &mut Vec<Selected>) {
+fn gather_selected(blocks: &[Block], selected: &[Selected], query: &PreparedQuery) -> Gathered {
+    let mut sums = Sums::default();
+    for selected in selected {
+        for (lane, d2) in selected.found().filter(|(_, d2)| *d2 <= query.r2) {
+            sums.add(&blocks[selected.block as usize], lane, d2, query);
+        }
+    }
+    sums.gathered()
+}
+
+/// Weighted flux by lane.
+#[derive(Default)]
+struct Sums {
+    flux: [[f32; LANES]; 3],
+    count: u32,
+}
+
+impl Sums {
+    fn add(&mut self, block: &Block, lane: usize, d2: f32, query: &PreparedQuery) {
+        let word = block.flux[lane];
+        let weight = raw_scale(word) * query.kernel.weight(d2);
+        for (sum, mantissa) in self.flux.iter_mut().zip(placed_mantissas(word).to_array()) {
+            sum[lane] += mantissa * weight;
+        }
+        self.count += 1;
+    }
+
+    fn gathered(self) -> Gathered {
+        Gathered { flux: Vec3::from_array(self.flux.map(tree_sum)) * PLACED_UNITS, count: self.count }
+    }
+}
+
+fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, _: &mut NormalMemo, found: &mut Vec<Selected>) {
     for &block in hits {
         let photons = &blocks[block as usize];
         let distances_sq = photons.distances_sq(query.position);
@@ -85,21 +111,10 @@ fn scan(blocks: &[Block], ids: &[[u32; LANES]], hits: &[u32], position: Vec3, r2
     }
 }
 
-fn kth(
-    blocks: &[Block],
-    hits: &mut Vec<u32>,
-    query: &PreparedQuery,
-    k: usize,
-    _: &mut NormalMemo,
-    distances_sq: &mut Vec<f32>,
-) -> Option<f32> {
-    hits.retain(|block| {
-        let block = &blocks[*block as usize];
-        let before = distances_sq.len();
-        let lanes = block.distances_sq(query.position).into_iter().zip(block.surface);
-        let found = lanes.filter(|(d2, surface)| *d2 <= query.r2 && query.accepts(*surface));
-        distances_sq.extend(found.map(|(d2, _)| d2));
-        distances_sq.len() > before
-    });
-    (distances_sq.len() >= k).then(|| kth_least(distances_sq, k))
+fn kth(selected: &[Selected], k: usize, distances_sq: &mut Vec<f32>) -> f32 {
+    distances_sq.clear();
+    for selected in selected {
+        distances_sq.extend(selected.found().map(|(_, d2)| d2));
+    }
+    kth_least(distances_sq, k)
 }
