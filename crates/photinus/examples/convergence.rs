@@ -1,5 +1,6 @@
 //! Error against the number of passes, as CSV:
-//! `cargo run --release -p photinus --example convergence SCENE WIDTHxHEIGHT path|progressive PASSES SEEDS`.
+//! `cargo run --release -p photinus --example convergence SCENE WIDTHxHEIGHT path|progressive PASSES SEEDS`; with other
+//! arguments a small one.
 //!
 //! Two references of PASSES passes each are made with seeds of their own: in the mode `path`, or in the mode `progressive`
 //! with a quarter of the smaller first radius and four times the photons, for light that a path tracer does not find.
@@ -176,10 +177,12 @@ fn relative_error(page: &Page, references: &[Page; 2], part: usize, away: bool) 
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [name, size, reference, passes, seeds] = arguments.as_slice() else {
-        eprintln!("usage: convergence SCENE WIDTHxHEIGHT path|progressive PASSES SEEDS");
-        std::process::exit(2);
-    };
+    let mut words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if words.len() != 5 {
+        eprintln!("usage: convergence SCENE WIDTHxHEIGHT path|progressive PASSES SEEDS; here a small one:");
+        words = vec!["spheres", "8x6", "path", "16", "1"];
+    }
+    let [name, size, reference, passes, seeds] = words[..] else { return Err("five words are five".into()) };
     let (width, height) = size.split_once('x').ok_or("the size is WIDTHxHEIGHT")?;
     let study = Study {
         scene: photinus::open(name, &LoadOptions::default())?,
