@@ -67,7 +67,7 @@ impl Estimates {
         match bsdf.constant(LobeSet::GATHER) {
             Some(factor) => Scatter::Constant(factor),
             None => {
-                self.bsdfs.push(*bsdf);
+                self.bsdfs.push(bsdf.clone());
                 Scatter::ByDirection(self.bsdfs.len() as u32 - 1)
             }
         }

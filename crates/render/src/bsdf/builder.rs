@@ -7,6 +7,7 @@ use super::scattering::{Bsdf, MAX_FRAMES, MAX_LOBES, ShadingFrame};
 use super::{GATHER_ALPHA, LobeSet, SurfaceModel};
 use crate::SurfacePoint;
 use crate::texture::TextureLookup;
+use arrayvec::ArrayVec;
 use photinus_geometry::{Frame, Vec3};
 use photinus_scene::{ColorInput, FloatInput, MaterialId};
 
@@ -36,7 +37,7 @@ pub(super) struct Builder<'a> {
     pub lookup: TextureLookup,
     /// 1 where `wo` is on the side of the outward normal, -1 otherwise.
     pub side: f32,
-    bsdf: Bsdf,
+    bsdf: &'a mut Bsdf,
     /// Share of the surface that is there at all: masks lower it.
     solid: f32,
 }
@@ -53,27 +54,20 @@ impl<'a> Builder<'a> {
             sided_frame(ns, point.frame.s, side)
         };
         let frame = ShadingFrame { axes, wo: local_wo(&axes, wo), bump_alpha_sq: 0.0 };
-        let bsdf = Bsdf {
+        let mut bsdf = Bsdf {
             wo,
             ng,
             ns,
             shading_normal: ns,
-            frames: [frame; MAX_FRAMES],
-            frame_count: 1,
-            lobes: [Lobe {
-                kind: LobeKind::Lambert,
-                set: LobeSet::NONE,
-                weight: Vec3::ZERO,
-                albedo: [Vec3::ZERO; 2],
-                eta: 1.0,
-                frame: 0,
-            }; MAX_LOBES],
-            lobe_count: 0,
+            frames: ArrayVec::new(),
+            lobes: ArrayVec::new(),
             kinds: LobeSet::NONE,
         };
-        let mut builder = Self { materials, point, lookup: point.lookup(), side, bsdf, solid: 0.0 };
+        bsdf.frames.push(frame);
+        let mut builder = Builder { materials, point, lookup: point.lookup(), side, bsdf: &mut bsdf, solid: 0.0 };
         builder.add(material, Place { share: 1.0, front: side > 0.0, frame: 0, depth: 0 });
-        builder.finish()
+        builder.finish();
+        bsdf
     }
 
     /// Adds the lobes of a nested material.
@@ -99,20 +93,17 @@ impl<'a> Builder<'a> {
     }
 
     /// Scales to what is there: callers meet a surface only after its mask let them.
-    fn finish(mut self) -> Bsdf {
+    fn finish(mut self) {
         if self.solid <= 0.0 {
             let place = Place { share: 1.0, front: true, frame: 0, depth: 0 };
             self.delta_transmission(place, Vec3::ONE, 1.0);
-            return self.bsdf;
-        }
-        if self.solid < 1.0 {
-            for lobe in &mut self.bsdf.lobes[..usize::from(self.bsdf.lobe_count)] {
+        } else if self.solid < 1.0 {
+            for lobe in &mut self.bsdf.lobes {
                 lobe.weight /= self.solid;
                 lobe.albedo[0] /= self.solid;
                 lobe.albedo[1] /= self.solid;
             }
         }
-        self.bsdf
     }
 
     /// How faithfully to model.
@@ -193,12 +184,11 @@ impl<'a> Builder<'a> {
 
     /// The place with a frame of its own, or with an equal one that is there; the last one takes all where they run out.
     fn add_frame(&mut self, place: Place, frame: ShadingFrame) -> Place {
-        let count = usize::from(self.bsdf.frame_count);
-        let known = self.bsdf.frames[..count].iter().position(|other| *other == frame);
-        let index = known.unwrap_or(count.min(MAX_FRAMES - 1));
-        if index == count {
-            self.bsdf.frames[index] = frame;
-            self.bsdf.frame_count += 1;
+        let frames = &mut self.bsdf.frames;
+        let known = frames.iter().position(|other| *other == frame);
+        let index = known.unwrap_or(frames.len().min(MAX_FRAMES - 1));
+        if index == frames.len() {
+            frames.push(frame);
         }
         Place { frame: index as u8, ..place }
     }
@@ -234,10 +224,7 @@ impl<'a> Builder<'a> {
         if self.merge(&lobe) {
             return;
         }
-        let count = usize::from(self.bsdf.lobe_count);
-        if count < MAX_LOBES {
-            self.bsdf.lobes[count] = lobe;
-            self.bsdf.lobe_count += 1;
+        if self.bsdf.lobes.try_push(lobe).is_ok() {
             self.bsdf.kinds |= set;
             return;
         }
@@ -252,7 +239,6 @@ impl<'a> Builder<'a> {
 
     /// Adds shapes without parameters to an equal one that is already there.
     fn merge(&mut self, lobe: &Lobe) -> bool {
-        let count = usize::from(self.bsdf.lobe_count);
         let same = |other: &&mut Lobe| {
             let shape = matches!(
                 (&other.kind, &lobe.kind),
@@ -263,7 +249,7 @@ impl<'a> Builder<'a> {
             );
             shape && other.frame == lobe.frame && other.eta == lobe.eta
         };
-        let Some(other) = self.bsdf.lobes[..count].iter_mut().find(same) else { return false };
+        let Some(other) = self.bsdf.lobes.iter_mut().find(same) else { return false };
         other.weight += lobe.weight;
         other.albedo[0] += lobe.albedo[0];
         other.albedo[1] += lobe.albedo[1];

@@ -4,6 +4,7 @@ use super::fresnel::fresnel_dielectric;
 use super::lobe::{Lobe, LobeKind};
 use super::microfacet::refract;
 use super::{LobeSet, TransportMode};
+use arrayvec::ArrayVec;
 use photinus_geometry::{Frame, Vec3};
 
 /// Lobes that a sum may have; what a material has beyond them is folded into a diffuse lobe of the same albedo.
@@ -61,7 +62,7 @@ pub struct BsdfSample {
 }
 
 /// Scattering at a point for one `wo`: made by [`Materials::resolve`](super::Materials::resolve).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Bsdf {
     /// World direction that it was resolved for.
     pub(super) wo: Vec3,
@@ -71,10 +72,8 @@ pub struct Bsdf {
     pub(super) ns: Vec3,
     /// Shading normal after the last bump map.
     pub(super) shading_normal: Vec3,
-    pub(super) frames: [ShadingFrame; MAX_FRAMES],
-    pub(super) frame_count: u8,
-    pub(super) lobes: [Lobe; MAX_LOBES],
-    pub(super) lobe_count: u8,
+    pub(super) frames: ArrayVec<ShadingFrame, MAX_FRAMES>,
+    pub(super) lobes: ArrayVec<Lobe, MAX_LOBES>,
     /// Union of the lobes' kinds.
     pub(super) kinds: LobeSet,
 }
@@ -106,7 +105,7 @@ impl Bsdf {
 
     #[inline]
     pub(super) fn lobes(&self) -> &[Lobe] {
-        &self.lobes[..usize::from(self.lobe_count)]
+        &self.lobes
     }
 
     /// The halves of lobes that `wi` can belong to: none where shading and geometric normal disagree on its side, so that

@@ -166,7 +166,7 @@ fn samples_follow_their_density() {
                     if kinds.is_empty() || (i > 0 && (kinds == bsdf.kinds() & LobeSet::NON_DELTA || z == 0.95)) {
                         continue;
                     }
-                    tests.push((format!("{} z {z} {set:?} {}", subject.name, point.frame.n), bsdf, set));
+                    tests.push((format!("{} z {z} {set:?} {}", subject.name, point.frame.n), bsdf.clone(), set));
                 }
             }
         }
