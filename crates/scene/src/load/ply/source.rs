@@ -38,13 +38,16 @@ impl<'a> Source<'a> {
 
     /// Refuses an element whose declared count cannot fit into what is left of the file.
     pub(super) fn check_count(&self, element: &Element) -> Result<(), Fault> {
-        let least = match self {
+        let (least, available) = match self {
             // A digit and a blank at least for every number, but for the last of all; lists may be missing.
-            Self::Text(_) => 2 * element.properties.iter().filter(|p| p.list.is_none()).count() as u64,
-            Self::Binary { .. } => element.least_size(),
+            Self::Text(_) => (
+                2 * element.properties.iter().filter(|p| p.list.is_none()).count() as u64,
+                self.left().saturating_add(1),
+            ),
+            Self::Binary { .. } => (element.least_size(), self.left()),
         };
         let needed = least.saturating_mul(element.count);
-        if needed > self.left().saturating_add(1) {
+        if needed > available {
             return Err(Fault::new(
                 self.line(),
                 format!(

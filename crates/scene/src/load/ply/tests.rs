@@ -162,6 +162,15 @@ fn what_is_broken_is_said() {
         let fault = from_bytes(&encode(format, &huge, &[&c[0]])).unwrap_err();
         assert!(fault.message.contains("500000000 of element \"vertex\""), "{fault:?}");
     }
+    // An element that is passed over ends one byte behind the file.
+    let last = format!("{header}element junk 3\nproperty uchar a\n");
+    for format in ["binary_little_endian", "binary_big_endian"] {
+        let face = [U8(3), I32(0), I32(1), I32(2)];
+        let rows = |junk: &[Value]| encode(format, &last, &[&c[0], &c[1], &c[2], &c[3], &face, junk]);
+        let fault = from_bytes(&rows(&[U8(1), U8(2)])).unwrap_err();
+        assert!(fault.message.contains("declares 3 of element \"junk\", but only 2 bytes"), "{fault:?}");
+        assert_eq!(read(&rows(&[U8(1), U8(2), U8(3)])).0.triangles.len(), 1);
+    }
     // Twice this many bytes are none in 64 bits.
     let mut endless = encode("ascii", &header, &[&c[0], &c[1], &c[2], &c[3]]);
     endless.extend(b"9223372036854775807 0 1 2\n");
