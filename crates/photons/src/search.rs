@@ -1,5 +1,6 @@
 //! What every photon search answers.
 
+use crate::visiting::{gather_nearest_by_collecting, gather_nearest_counted_by_collecting};
 use crate::{Kernel, Photon};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
@@ -101,7 +102,9 @@ pub trait Search: Send + Sync {
     /// As [`Search::gather`] over the `k` nearest of what it would sum: where those within the radius are more, only up
     /// to the distance of the `k`th, with the kernel's radius at that distance. All photons at exactly that distance
     /// count, so that there can be more than `k`; 0 finds nothing.
-    fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]);
+    fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
+        gather_nearest_by_collecting(self, queries, k, kernel, out);
+    }
 
     /// As [`Search::gather_nearest`] with the work counted: the same results, more slowly, all on the calling thread.
     fn gather_nearest_counted(
@@ -111,11 +114,15 @@ pub trait Search: Send + Sync {
         kernel: Kernel,
         out: &mut [GatheredNearest],
         counters: &mut SearchCounters,
-    );
+    ) {
+        gather_nearest_counted_by_collecting(self, queries, k, kernel, out, counters);
+    }
 
     /// Collects the photons that [`Search::gather_nearest`] would sum for `query` with their squared distances, in an
     /// order that depends on nothing but the photons; `found` is cleared first.
-    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>);
+    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>) {
+        self.collect_nearest_counted(query, k, found, &mut SearchCounters::default());
+    }
 
     /// As [`Search::collect_nearest`], with the work added to `counters`.
     fn collect_nearest_counted(

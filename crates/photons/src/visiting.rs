@@ -83,7 +83,7 @@ fn gather_collected(
 
 /// [`Search::gather_nearest`] by [`Search::collect_nearest`].
 pub(crate) fn gather_nearest_by_collecting(
-    search: &dyn Search,
+    search: &(impl Search + ?Sized),
     queries: &[GatherQuery],
     k: u32,
     kernel: Kernel,
@@ -98,7 +98,7 @@ pub(crate) fn gather_nearest_by_collecting(
 
 /// [`Search::gather_nearest_counted`] by [`Search::collect_nearest_counted`].
 pub(crate) fn gather_nearest_counted_by_collecting(
-    search: &dyn Search,
+    search: &(impl Search + ?Sized),
     queries: &[GatherQuery],
     k: u32,
     kernel: Kernel,

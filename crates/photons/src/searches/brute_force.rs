@@ -2,11 +2,8 @@
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
 use crate::nearest::sort_by_distance;
-use crate::visiting::{
-    gather_batch_by_visiting, gather_counted_by_visiting, gather_nearest_by_collecting,
-    gather_nearest_counted_by_collecting,
-};
-use crate::{GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, Search, SearchSummary};
+use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
+use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 
@@ -57,31 +54,6 @@ impl Search for BruteForce {
         *counters += SearchCounters { searches: 1, photons_tested: self.photons.len() as u64, photons_found };
     }
 
-    fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
-        gather_nearest_by_collecting(self, queries, k, kernel, out);
-    }
-
-    fn gather_nearest_counted(
-        &self,
-        queries: &[GatherQuery],
-        k: u32,
-        kernel: Kernel,
-        out: &mut [GatheredNearest],
-        counters: &mut SearchCounters,
-    ) {
-        gather_nearest_counted_by_collecting(self, queries, k, kernel, out, counters);
-    }
-
-    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>) {
-        found.clear();
-        self.visit(query, &mut |photon, d2| found.push((*photon, d2)));
-        let mut distances: Vec<f32> = found.iter().map(|(_, d2)| *d2).collect();
-        distances.sort_unstable_by(f32::total_cmp);
-        let farthest = distances.get((k as usize).wrapping_sub(1)).copied();
-        let farthest = farthest.unwrap_or(if k == 0 { -1.0 } else { f32::INFINITY });
-        found.retain(|(_, d2)| *d2 <= farthest);
-    }
-
     fn collect_nearest_counted(
         &self,
         query: &GatherQuery,
@@ -89,7 +61,13 @@ impl Search for BruteForce {
         found: &mut Vec<(Photon, f32)>,
         counters: &mut SearchCounters,
     ) {
-        self.collect_nearest(query, k, found);
+        found.clear();
+        self.visit(query, &mut |photon, d2| found.push((*photon, d2)));
+        let mut distances: Vec<f32> = found.iter().map(|(_, d2)| *d2).collect();
+        distances.sort_unstable_by(f32::total_cmp);
+        let farthest = distances.get((k as usize).wrapping_sub(1)).copied();
+        let farthest = farthest.unwrap_or(if k == 0 { -1.0 } else { f32::INFINITY });
+        found.retain(|(_, d2)| *d2 <= farthest);
         *counters += SearchCounters {
             searches: 1,
             photons_tested: self.photons.len() as u64,

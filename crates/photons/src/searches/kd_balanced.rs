@@ -7,11 +7,8 @@
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
 use crate::nearest::{NearestHeap, Ties};
-use crate::visiting::{
-    gather_batch_by_visiting, gather_counted_by_visiting, gather_nearest_by_collecting,
-    gather_nearest_counted_by_collecting,
-};
-use crate::{GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, Search, SearchSummary};
+use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
+use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::{Aabb, Vec3};
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
@@ -217,25 +214,6 @@ impl Search for KdBalanced {
             visit(photon, d2);
         });
         *counters += SearchCounters { searches: 1, photons_tested, photons_found };
-    }
-
-    fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
-        gather_nearest_by_collecting(self, queries, k, kernel, out);
-    }
-
-    fn gather_nearest_counted(
-        &self,
-        queries: &[GatherQuery],
-        k: u32,
-        kernel: Kernel,
-        out: &mut [GatheredNearest],
-        counters: &mut SearchCounters,
-    ) {
-        gather_nearest_counted_by_collecting(self, queries, k, kernel, out, counters);
-    }
-
-    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>) {
-        self.collect_nearest_counted(query, k, found, &mut SearchCounters::default());
     }
 
     fn collect_nearest_counted(

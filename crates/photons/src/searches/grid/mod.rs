@@ -158,10 +158,6 @@ impl Search for Grid {
         counters.photons_found += out.iter().map(|out| u64::from(out.count)).sum::<u64>();
     }
 
-    fn collect_nearest(&self, query: &GatherQuery, k: u32, found: &mut Vec<(Photon, f32)>) {
-        self.collect_nearest_counted(query, k, found, &mut SearchCounters::default());
-    }
-
     fn collect_nearest_counted(
         &self,
         query: &GatherQuery,
