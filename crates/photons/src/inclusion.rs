@@ -46,7 +46,13 @@ impl PreparedQuery {
     /// Whether a photon with this surface word passes the tests of normal and depth.
     #[inline]
     pub(crate) fn accepts(&self, surface: u32) -> bool {
-        surface & LOW_MASK <= self.low_limit && self.normal_within_60(surface)
+        self.is_shallow(surface) && self.normal_within_60(surface)
+    }
+
+    /// Whether a photon with this surface word passes the test of depth.
+    #[inline]
+    pub(crate) fn is_shallow(&self, surface: u32) -> bool {
+        surface & LOW_MASK <= self.low_limit
     }
 
     /// cos 60 = 1/2: with v the stored normal of any length, v . n >= |v| / 2, squared to save the root.

@@ -99,6 +99,12 @@ pub trait Search: Send + Sync {
     /// As [`Search::visit`], with the work added to `counters`.
     fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters);
 
+    /// A number that is near for queries that the nearest are looked for together: sorting a large batch by it before it is
+    /// cut into pieces saves time. Results do not depend on it.
+    fn neighbourhood(&self, _query: &GatherQuery) -> u64 {
+        0
+    }
+
     /// As [`Search::gather`] over the `k` nearest of what it would sum: where those within the radius are more, only up
     /// to the distance of the `k`th, with the kernel's radius at that distance. All photons at exactly that distance
     /// count, so that there can be more than `k`; 0 finds nothing.

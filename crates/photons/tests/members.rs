@@ -9,7 +9,7 @@ use photinus_photons::{
     kd_balanced,
 };
 use photinus_profile::SearchCounters;
-use support::{SEED, Set, queries, sets};
+use support::{SEED, Set, crowds, queries, sets};
 
 const KERNELS: [Kernel; 4] = [Kernel::Constant, Kernel::Cone { k: 1.1 }, Kernel::Epanechnikov, Kernel::Gaussian];
 
@@ -146,6 +146,7 @@ fn the_nearest_of_what_gather_finds_agree_with_the_oracle() {
         for (i, query) in queries.iter_mut().enumerate() {
             query.radius *= [1.0, 4.0, f32::INFINITY][i % 3];
         }
+        queries.extend(crowds(&set, 9));
         let words = |found: &[(Photon, f32)]| {
             let mut words: Vec<_> = found.iter().map(|(photon, d2)| (d2.to_bits(), photon.to_words())).collect();
             words.sort_unstable();

@@ -17,6 +17,9 @@ use photinus_profile::queries::RayKind;
 /// Levels followed where neither the scene nor the user limits them: 2^8 rays a pixel at the very most.
 pub(crate) const DEFAULT_LEVELS: u32 = 8;
 
+/// Edge of a tile in pixels: its estimates are made together, as rays from all over it end in the same places.
+const TILE: u32 = 96;
+
 struct Node {
     ray: Ray,
     throughput: Vec3,
@@ -39,7 +42,7 @@ impl Node {
 impl EyePass<'_> {
     /// As [`EyePass::run`], by the thesis's recursion.
     pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.tiles()
+        self.tiles(TILE)
             .run(film, observer, |index, tile, counters| self.direct_tile(maps, index, tile, counters, observer))
     }
 
@@ -78,6 +81,7 @@ impl EyePass<'_> {
                 })
                 .collect();
             counters.rays.camera += nodes.len() as u64;
+            estimates.clear();
             while !nodes.is_empty() {
                 rays.clear();
                 rays.extend(nodes.iter().map(|n| n.ray));
@@ -87,7 +91,6 @@ impl EyePass<'_> {
                     draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], place, sample)).next_1d()
                 });
                 nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
-                estimates.clear();
                 let mut next = Vec::new();
                 timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
                     for (node, hit) in nodes.iter().zip(&hits) {
@@ -96,21 +99,14 @@ impl EyePass<'_> {
                     }
                 });
                 counters.rays.specular += next.len() as u64;
-                maps.global.estimate(
-                    &estimates.list,
-                    &estimates,
-                    maps.knn,
-                    &mut twin,
-                    &mut scratch,
-                    &mut found,
-                    counters,
-                );
-                for (e, found) in estimates.list.iter().zip(&found) {
-                    tile.estimated(e.path, found);
-                }
-                scratch.hand_over(&mut tracer);
                 nodes = next;
             }
+            maps.global.sort(&mut estimates.list, maps.knn);
+            maps.global.estimate(&estimates.list, &estimates, maps.knn, &mut twin, &mut scratch, &mut found, counters);
+            for (e, found) in estimates.list.iter().zip(&found) {
+                tile.estimated(e.path, found);
+            }
+            scratch.hand_over(&mut tracer);
         }
         tracer.finish();
         self.spp

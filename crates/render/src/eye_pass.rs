@@ -20,6 +20,9 @@ use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
 use photinus_profile::queries::{BlockKey, RayKind, Stage};
 
+/// Edge of a tile in pixels.
+const TILE: u32 = 32;
+
 /// Everything an eye pass needs.
 pub(crate) struct EyePass<'a> {
     pub world: &'a World,
@@ -107,7 +110,7 @@ impl EyePass<'_> {
     /// Renders one pass into `film` (channels of each pixel of the window, row by row), means over the samples of
     /// the pass. Where it is stopped, tiles that have any sample are there, as means over those.
     pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.tiles().run(film, observer, |index, tile, counters| {
+        self.tiles(TILE).run(film, observer, |index, tile, counters| {
             let mut tracer = self.tracer(index);
             let mut twin = self.twin(Queries::Estimates, index);
             for sample in 0..self.spp {
@@ -125,8 +128,8 @@ impl EyePass<'_> {
     }
 
     /// The tiles of the pass.
-    pub(crate) fn tiles(&self) -> Tiles<'_> {
-        Tiles { layout: self.layout, window: self.crop, samples: self.spp }
+    pub(crate) fn tiles(&self, edge: u32) -> Tiles<'_> {
+        Tiles { layout: self.layout, window: self.crop, samples: self.spp, edge }
     }
 
     /// The tracer of a tile.

@@ -115,6 +115,13 @@ impl EstimateScratch {
 }
 
 impl Map {
+    /// Sorts estimates by their neighbourhoods where those are of use: for the nearest photons.
+    pub fn sort(&self, list: &mut [Estimate], knn: Option<u32>) {
+        if knn.is_some() {
+            list.sort_by_cached_key(|e| self.search.neighbourhood(&e.query));
+        }
+    }
+
     /// Makes the estimates `list` of the batch `estimates`; `out` gets one entry for each. The radius of a query is a lower bound for
     /// that of the map: a wide pixel gathers over its own width.
     pub fn estimate(

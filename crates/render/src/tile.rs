@@ -8,9 +8,6 @@ use photinus_geometry::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Edge of a tile in pixels; fixed, so that batches do not depend on the machine.
-pub(crate) const TILE: u32 = 32;
-
 /// Which picture a contribution belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
@@ -103,6 +100,8 @@ pub(crate) struct Tiles<'a> {
     pub window: [u32; 4],
     /// Samples of a pixel that a tile is to make.
     pub samples: u32,
+    /// Edge of a tile in pixels; fixed, so that batches do not depend on the machine.
+    pub edge: u32,
 }
 
 impl Tiles<'_> {
@@ -114,12 +113,12 @@ impl Tiles<'_> {
         render: impl Fn(u32, &mut Tile, &mut Counters) -> u32 + Sync,
     ) -> Result<Counters, Cancelled> {
         let [_, _, width, height] = self.window;
-        let (across, down) = (width.div_ceil(TILE), height.div_ceil(TILE));
+        let (across, down) = (width.div_ceil(self.edge), height.div_ceil(self.edge));
         let tiles = across * down;
         let done = AtomicU64::new(0);
         let place = |tile: u32| {
-            let (x0, y0) = (tile % across * TILE, tile / across * TILE);
-            (x0, y0, TILE.min(width - x0), TILE.min(height - y0))
+            let (x0, y0) = (tile % across * self.edge, tile / across * self.edge);
+            (x0, y0, self.edge.min(width - x0), self.edge.min(height - y0))
         };
         let results: Vec<Option<(Vec<f32>, Counters, u32)>> = (0..tiles)
             .into_par_iter()

@@ -26,6 +26,8 @@ const KERNELS: &[Kernel] = &[
     Kernel { path: "crates/cli/src/allocator.rs", twin_test: ALLOCATOR_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },
+    Kernel { path: "crates/photons/src/searches/grid/shared/avx2.rs", twin_test: GRID_TWIN_TEST },
+    Kernel { path: "crates/photons/src/searches/grid/shared/avx512.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx2.rs", twin_test: WIDE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx512.rs", twin_test: WIDE_TWIN_TEST },
     Kernel {

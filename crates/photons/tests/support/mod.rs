@@ -162,3 +162,28 @@ pub fn queries(set: &Set, count: usize) -> Vec<GatherQuery> {
     queries.push(GatherQuery { position: Vec3::splat(-1e18), radius: f32::MAX, ..base });
     queries
 }
+
+/// Crowds of queries around some of [`queries`], close enough to one another to be answered together: with one normal and
+/// with many, with one radius and with many, some too wide for the photons that suit the others.
+pub fn crowds(set: &Set, count: usize) -> Vec<GatherQuery> {
+    let crowd = |(i, base): (usize, GatherQuery)| {
+        (0..13).map(move |j| {
+            let mut s = sampler(101, 16 * i + j);
+            let mut query = base;
+            query.position += direction(&mut s) * (0.2 * set.radius * s.next_1d());
+            if i % 3 == 1 {
+                query.normal = (query.normal + 0.3 * direction(&mut s)).normalize_or(Vec3::Z);
+            }
+            if i % 4 == 1 {
+                query.radius *= 1.0 + s.next_1d();
+            }
+            if j == 7 && i % 2 == 0 {
+                query.radius *= 6.0;
+            }
+            query
+        })
+    };
+    let mut bases = queries(set, count);
+    bases.iter_mut().step_by(3).for_each(|query| query.radius *= 2.5);
+    bases.into_iter().enumerate().flat_map(crowd).collect()
+}

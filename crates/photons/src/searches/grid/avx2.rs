@@ -5,7 +5,8 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
-use super::kth::kth_least;
+use super::kth::{kth_least, pad};
+use super::shared;
 use crate::Gathered;
 use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
@@ -22,7 +23,18 @@ const HALF: usize = 8;
 pub(crate) fn kernels() -> Option<VectorKernels> {
     let has_all =
         is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
-    has_all.then_some(VectorKernels { name: "avx2", cull, prefetch, gather, select, scan, kth, gather_selected })
+    let shared = shared::avx2::KERNELS;
+    has_all.then_some(VectorKernels {
+        name: "avx2",
+        cull,
+        prefetch,
+        gather,
+        select,
+        scan,
+        kth,
+        gather_selected,
+        shared,
+    })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
@@ -409,5 +421,6 @@ fn kth_distance(selected: &[Selected], k: usize, distances: &mut Vec<f32>) -> f3
             lanes &= lanes - 1;
         }
     }
-    kth_least(distances, k)
+    pad(distances);
+    kth_least(distances, -1.0, k)
 }

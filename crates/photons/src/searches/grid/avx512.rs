@@ -5,7 +5,8 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::Candidates;
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
-use super::kth::kth_least;
+use super::kth::{kth_least, pad};
+use super::shared;
 use crate::Gathered;
 use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
@@ -19,7 +20,18 @@ use std::ops::Range;
 pub(crate) fn kernels() -> Option<VectorKernels> {
     let has_all =
         is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("popcnt") && is_x86_feature_detected!("bmi1");
-    has_all.then_some(VectorKernels { name: "avx512", cull, prefetch, gather, select, scan, kth, gather_selected })
+    let shared = shared::avx512::KERNELS;
+    has_all.then_some(VectorKernels {
+        name: "avx512",
+        cull,
+        prefetch,
+        gather,
+        select,
+        scan,
+        kth,
+        gather_selected,
+        shared,
+    })
 }
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
@@ -83,7 +95,7 @@ fn gather_selected(blocks: &[Block], selected: &[Selected], query: &PreparedQuer
 /// A block's field as a vector.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn floats(lanes: &[f32; LANES]) -> __m512 {
+pub(super) fn floats(lanes: &[f32; LANES]) -> __m512 {
     // SAFETY: the reference covers the 64 bytes read; no alignment is asked for.
     unsafe { _mm512_loadu_ps(lanes.as_ptr()) }
 }
@@ -91,27 +103,27 @@ fn floats(lanes: &[f32; LANES]) -> __m512 {
 /// A block's field as a vector.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn words(lanes: &[u32; LANES]) -> __m512i {
+pub(super) fn words(lanes: &[u32; LANES]) -> __m512i {
     // SAFETY: the reference covers the 64 bytes read; no alignment is asked for.
     unsafe { _mm512_loadu_si512(lanes.as_ptr().cast()) }
 }
 
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn splat(position: Vec3) -> [__m512; 3] {
+pub(super) fn splat(position: Vec3) -> [__m512; 3] {
     [_mm512_set1_ps(position.x), _mm512_set1_ps(position.y), _mm512_set1_ps(position.z)]
 }
 
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn dot(a: [__m512; 3], b: [__m512; 3]) -> __m512 {
+pub(super) fn dot(a: [__m512; 3], b: [__m512; 3]) -> __m512 {
     let xy = _mm512_add_ps(_mm512_mul_ps(a[0], b[0]), _mm512_mul_ps(a[1], b[1]));
     _mm512_add_ps(xy, _mm512_mul_ps(a[2], b[2]))
 }
 
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn distances_sq(block: &Block, position: [__m512; 3]) -> __m512 {
+pub(super) fn distances_sq(block: &Block, position: [__m512; 3]) -> __m512 {
     let d = [
         _mm512_sub_ps(floats(&block.x), position[0]),
         _mm512_sub_ps(floats(&block.y), position[1]),
@@ -120,10 +132,10 @@ fn distances_sq(block: &Block, position: [__m512; 3]) -> __m512 {
     dot(d, d)
 }
 
-/// Lanes whose normal is within 60 degrees of `normal`.
+/// Normals of surface words, of any length.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn normals_within_60(surface: __m512i, normal: [__m512; 3]) -> __mmask16 {
+pub(super) fn normals(surface: __m512i) -> [__m512; 3] {
     let zero = _mm512_setzero_ps();
     let sign_bit = _mm512_castsi512_ps(_mm512_set1_epi32(i32::MIN));
     let (sign_bits, x, y) = (
@@ -136,7 +148,14 @@ fn normals_within_60(surface: __m512i, normal: [__m512; 3]) -> __mmask16 {
     // fold with the sign of v: bits of the second where the first is set, of the third elsewhere.
     let signed =
         |v: __m512| _mm512_castsi512_ps(_mm512_ternarylogic_epi32::<0xCA>(sign_bits, _mm512_castps_si512(v), fold));
-    let v = [_mm512_sub_ps(x, signed(x)), _mm512_sub_ps(y, signed(y)), z];
+    [_mm512_sub_ps(x, signed(x)), _mm512_sub_ps(y, signed(y)), z]
+}
+
+/// Lanes whose normal is within 60 degrees of `normal`.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn normals_within_60(surface: __m512i, normal: [__m512; 3]) -> __mmask16 {
+    let (v, zero) = (normals(surface), _mm512_setzero_ps());
     let cos = dot(v, normal);
     let bound = _mm512_mul_ps(_mm512_set1_ps(0.25), dot(v, v));
     let front = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(cos, zero);
@@ -145,7 +164,7 @@ fn normals_within_60(surface: __m512i, normal: [__m512; 3]) -> __mmask16 {
 
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn weights<const KERNEL: u8>(d2: __m512, inv_r2: __m512, inv_k: __m512) -> __m512 {
+pub(super) fn weights<const KERNEL: u8>(d2: __m512, inv_r2: __m512, inv_k: __m512) -> __m512 {
     let one = _mm512_set1_ps(1.0);
     let u = _mm512_mul_ps(d2, inv_r2);
     match KERNEL {
@@ -164,7 +183,7 @@ fn weights<const KERNEL: u8>(d2: __m512, inv_r2: __m512, inv_k: __m512) -> __m51
 /// The sixteen lanes in the fixed tree of the scalar kernel.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn tree_sum(v: __m512) -> f32 {
+pub(super) fn tree_sum(v: __m512) -> f32 {
     let v = _mm512_add_ps(v, _mm512_shuffle_f32x4::<0b01_00_11_10>(v, v));
     let v = _mm512_add_ps(v, _mm512_shuffle_f32x4::<0b10_11_00_01>(v, v));
     let v = _mm512_castps512_ps128(v);
@@ -408,5 +427,6 @@ fn kth_distance(selected: &[Selected], k: usize, distances: &mut Vec<f32>) -> f3
             distances.set_len(distances.len() + found.count_ones() as usize);
         }
     }
-    kth_least(distances, k)
+    pad(distances);
+    kth_least(distances, -1.0, k)
 }

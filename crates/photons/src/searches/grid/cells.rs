@@ -15,6 +15,8 @@ const FINE_CELLS: usize = 1 << (3 * FINE_LEVELS);
 const EDGE_IN_RADII: f32 = 2.02;
 /// Bits of a fine cell along an axis: its place is exact to a quarter of a fine cell, and three fit a key.
 const AXIS_BITS: u32 = 21;
+/// Bits of a quarter of a fine cell along an axis in a key of queries: three and nine bits more fit one.
+const NEIGHBOURHOOD_BITS: u32 = 18;
 /// Least edge of a fine cell, scene units: photons closer than 1e-18 have a squared distance that underflows, so that
 /// they may be found at any radius; that must be far less than a fine cell.
 const MIN_FINE_EDGE: f64 = 1e-15;
@@ -85,6 +87,26 @@ impl Cells {
         // Casts take NaN and what is below zero to zero.
         let [x, y, z] = (self.place(p) * (2.0 / FINE)).to_array().map(|u| spread(u64::from(u as u16)));
         x | y << 1 | z << 2
+    }
+
+    /// A key that sorts queries by their neighbourhoods: by fine cells in Morton order, in each by the half-axis that their
+    /// normals are nearest to, then by quarters of the fine cell.
+    #[inline]
+    pub(crate) fn neighbourhood(&self, position: Vec3, normal: Vec3) -> u64 {
+        // Casts take NaN and what is below zero to zero; neighbourhoods far outside the box are one.
+        let quarter = |u: f32| u64::from((u * 4.0) as u32).min((1 << NEIGHBOURHOOD_BITS) - 1);
+        let [x, y, z] = self.place(position).to_array().map(quarter);
+        let morton = |bits: fn(u64) -> u64| spread(bits(x)) | spread(bits(y)) << 1 | spread(bits(z)) << 2;
+        let size = normal.abs();
+        let axis = if size.x > size.y && size.x > size.z { 0 } else { 1 + usize::from(size.z >= size.y) };
+        let half_axis = 2 * axis as u64 + u64::from(normal[axis] < 0.0);
+        (morton(|u| u >> 2) << 3 | half_axis) << 6 | morton(|u| u & 3)
+    }
+
+    /// Whether two keys are of one fine cell and one half-axis.
+    #[inline]
+    pub(crate) fn same_neighbourhood(a: u64, b: u64) -> bool {
+        (a ^ b) >> 6 == 0
     }
 
     /// Index of the cell of a key.

@@ -3,6 +3,7 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::Candidates;
 use super::scalar;
+use super::shared::{Found, Share, Shared};
 use crate::inclusion::PreparedQuery;
 use crate::photon::NORMAL_MASK;
 use crate::{Gathered, Kernel};
@@ -45,6 +46,22 @@ pub(crate) type Kth = fn(&[Selected], usize, &mut Vec<f32>) -> f32;
 /// Sums the photons that were found up to a query's squared distance.
 pub(crate) type GatherSelected = fn(&[Block], &[Selected], &PreparedQuery) -> Gathered;
 
+/// Collects the photons of these blocks that are shared.
+pub(crate) type Collect = fn(&[Block], &[u32], &Share, &mut Shared);
+/// Finds the nearest of what a query finds among shared photons, `k` at most and 1 at least. A squared distance at which the
+/// `k`-th may be saves time where it is near.
+pub(crate) type Nearest = fn(&mut Shared, &PreparedQuery, usize, f32) -> Found;
+/// Sums what the last query found among shared photons up to a squared distance.
+pub(crate) type GatherShared = fn(&Shared, &PreparedQuery) -> Gathered;
+
+/// Kernels for photons that neighbouring queries share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SharedKernels {
+    pub(crate) collect: Collect,
+    pub(crate) nearest: Nearest,
+    pub(crate) gather: GatherShared,
+}
+
 /// Kernels for one width of vectors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct VectorKernels {
@@ -56,6 +73,7 @@ pub(crate) struct VectorKernels {
     pub(crate) scan: Scan,
     pub(crate) kth: Kth,
     pub(crate) gather_selected: GatherSelected,
+    pub(crate) shared: SharedKernels,
 }
 
 /// Photons of a block that a query finds.

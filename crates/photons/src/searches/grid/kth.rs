@@ -5,16 +5,14 @@ const LANES: usize = 16;
 /// Guesses by proportion before the range is halved instead.
 const GUESSES: u32 = 12;
 
-/// The `k`-th least (from 1) of `values`, which are not negative; at least `k` of them are finite. Values are padded
-/// with infinities to full lanes.
+/// The `k`-th least (from 1) of `values`, full lanes of numbers above `low`; at least `k` of them are finite. Squared
+/// distances, none of them negative, are all above -1.
 ///
 /// Distances squared on a surface are spread evenly, so that a guess in proportion to the number wanted is near; a few
 /// passes over the values find a number that exactly `k` are below.
 #[inline(always)]
-pub(crate) fn kth_least(values: &mut Vec<f32>, k: usize) -> f32 {
-    let padding = values.len().wrapping_neg() % LANES;
-    values.extend([f32::INFINITY; LANES].into_iter().take(padding));
-    let (mut low, mut low_count) = (-1.0f32, 0);
+pub(crate) fn kth_least(values: &[f32], mut low: f32, k: usize) -> f32 {
+    let mut low_count = 0;
     let (mut high, mut high_count) = farthest_within(values, f32::MAX);
     let mut guesses = 0;
     while high_count > k {
@@ -35,6 +33,13 @@ pub(crate) fn kth_least(values: &mut Vec<f32>, k: usize) -> f32 {
         }
     }
     high
+}
+
+/// Fills the last lanes with infinities.
+#[inline]
+pub(crate) fn pad(values: &mut Vec<f32>) {
+    let padding = values.len().wrapping_neg() % LANES;
+    values.extend(std::iter::repeat_n(f32::INFINITY, padding));
 }
 
 /// The number halfway between two by their bits: as many numbers lie on either side; `high` where none is left.
@@ -83,11 +88,12 @@ mod tests {
         ];
         for set in sets {
             for count in [1u64, 2, 15, 16, 17, 100, 130, 500] {
-                let values: Vec<f32> = (0..count).map(set).collect();
+                let mut values: Vec<f32> = (0..count).map(set).collect();
                 let mut sorted = values.clone();
+                pad(&mut values);
                 sorted.sort_unstable_by(f32::total_cmp);
                 for k in (1..=count as usize).filter(|k| *k < 20 || k % 7 == 0 || *k == count as usize) {
-                    assert_eq!(kth_least(&mut values.clone(), k), sorted[k - 1], "{k} of {count}");
+                    assert_eq!(kth_least(&values, -1.0, k), sorted[k - 1], "{k} of {count}");
                 }
             }
         }

@@ -14,11 +14,13 @@ mod blocks;
 mod build;
 mod candidates;
 mod cells;
+mod group;
 mod kernels;
 mod kth;
 mod narrow;
 mod reach;
 mod scalar;
+mod shared;
 mod sort;
 mod table;
 #[cfg(test)]
@@ -134,12 +136,13 @@ impl Search for Grid {
         *counters += SearchCounters { searches: 1, photons_tested: self.photons_in(&scratch), photons_found };
     }
 
+    fn neighbourhood(&self, query: &GatherQuery) -> u64 {
+        self.cells.neighbourhood(query.position, query.normal)
+    }
+
     fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
         assert_eq!(queries.len(), out.len(), "one result a query");
-        let parts = queries.par_chunks(QUERIES_A_TASK).zip(out.par_chunks_mut(QUERIES_A_TASK));
-        parts.for_each(|(queries, out)| {
-            self.gather_nearest_part(queries, k, kernel, out);
-        });
+        self.gather_nearest_batch(queries, k, kernel, true, out);
     }
 
     fn gather_nearest_counted(
@@ -151,9 +154,7 @@ impl Search for Grid {
         counters: &mut SearchCounters,
     ) {
         assert_eq!(queries.len(), out.len(), "one result a query");
-        for (queries, out) in queries.chunks(QUERIES_A_TASK).zip(out.chunks_mut(QUERIES_A_TASK)) {
-            counters.photons_tested += self.gather_nearest_part(queries, k, kernel, out);
-        }
+        counters.photons_tested += self.gather_nearest_batch(queries, k, kernel, false, out);
         counters.searches += queries.len() as u64;
         counters.photons_found += out.iter().map(|out| u64::from(out.count)).sum::<u64>();
     }

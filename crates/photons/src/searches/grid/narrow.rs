@@ -4,25 +4,29 @@
 use super::Grid;
 use super::kernels::{NormalMemo, Selected};
 use super::reach::Scratch;
+use super::shared::Shared;
+use crate::GatheredNearest;
 use crate::inclusion::PreparedQuery;
 use crate::kernel::PreparedKernel;
-use crate::{GatherQuery, GatheredNearest, Kernel};
 
 /// A ball this much wider than that of the neighbouring query holds enough photons most of the time.
-const WIDER: f32 = 1.1;
+pub(crate) const WIDER: f32 = 1.1;
 
 /// Balls that are tried before the query's own.
-const ATTEMPTS: u32 = 8;
+pub(crate) const ATTEMPTS: u32 = 8;
 
 /// What one search for the nearest hands to the next; results do not depend on it.
 pub(crate) struct NearestFinder {
-    scratch: Scratch,
+    pub(crate) scratch: Scratch,
     memo: NormalMemo,
     /// What the last query found, more than the nearest.
     pub(crate) selected: Vec<Selected>,
     distances_sq: Vec<f32>,
     /// Radius that the last query needed; zero before the first.
-    last_radius: f32,
+    pub(crate) last_radius: f32,
+    /// Photons that the queries of a group share, those within this distance of its centre.
+    pub(crate) shared: Shared,
+    pub(crate) shared_extent: f32,
     /// Photons tested since it was made.
     pub(crate) tested: u64,
 }
@@ -35,6 +39,8 @@ impl NearestFinder {
             selected: Vec::with_capacity(64),
             distances_sq: Vec::with_capacity(512),
             last_radius: 0.0,
+            shared: Shared::default(),
+            shared_extent: 0.0,
             tested: 0,
         }
     }
@@ -78,38 +84,32 @@ impl Grid {
                 finder.last_radius = radius;
                 break;
             }
-            // As many photons as were found tell how much wider the ball has to be, on an even surface.
-            reach *= (1.2 * k as f32 / found.max(1) as f32).sqrt().clamp(1.1, 4.0);
+            reach *= wider_for(k, found);
         }
         query
     }
 
-    /// Sums the nearest of a part of a batch, at most 65,536 queries, on one thread; returns the photons tested.
-    pub(crate) fn gather_nearest_part(
+    /// Sums the nearest of one query of this radius.
+    pub(crate) fn nearest_alone(
         &self,
-        queries: &[GatherQuery],
+        query: PreparedQuery,
+        radius: f32,
         k: u32,
-        kernel: Kernel,
-        out: &mut [GatheredNearest],
-    ) -> u64 {
-        let mut finder = NearestFinder::new();
-        let mut one = |i: usize| {
-            let prepared = PreparedQuery::new(&queries[i], kernel);
-            let nearest = self.narrow(prepared, queries[i].radius, k, &mut finder);
-            let sums = (self.kernels.gather_selected)(&self.blocks, &finder.selected, &nearest);
-            let farthest = || finder.selected.iter().flat_map(Selected::found).fold(0f32, |most, (_, d2)| most.max(d2));
-            let farthest_sq = match sums.count {
-                0 => 0.0,
-                count if count >= k => nearest.r2,
-                _ => farthest(),
-            };
-            out[i] = GatheredNearest { flux: sums.flux, count: sums.count, farthest_sq };
+        finder: &mut NearestFinder,
+    ) -> GatheredNearest {
+        let nearest = self.narrow(query, radius, k, finder);
+        let sums = (self.kernels.gather_selected)(&self.blocks, &finder.selected, &nearest);
+        let farthest = || finder.selected.iter().flat_map(Selected::found).fold(0f32, |most, (_, d2)| most.max(d2));
+        let farthest_sq = match sums.count {
+            0 => 0.0,
+            count if count >= k => nearest.r2,
+            _ => farthest(),
         };
-        if self.are_coherent(queries) {
-            (0..queries.len()).for_each(&mut one);
-        } else {
-            self.sorted(queries).into_iter().for_each(&mut one);
-        }
-        finder.tested
+        GatheredNearest { flux: sums.flux, count: sums.count, farthest_sq }
     }
+}
+
+/// How much wider a ball that holds `found` photons has to be for `k`, on an even surface.
+pub(crate) fn wider_for(k: u32, found: u32) -> f32 {
+    (1.2 * k as f32 / found.max(1) as f32).sqrt().clamp(1.1, 4.0)
 }

@@ -3,7 +3,8 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
 use super::kernels::{NormalMemo, Selected, VectorKernels};
-use super::kth::kth_least;
+use super::kth::{kth_least, pad};
+use super::shared;
 use crate::Gathered;
 use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
 use crate::inclusion::PreparedQuery;
@@ -11,8 +12,17 @@ use photinus_geometry::Vec3;
 use std::ops::Range;
 
 /// These kernels, for any processor.
-pub(crate) const KERNELS: VectorKernels =
-    VectorKernels { name: "scalar", cull, prefetch: |_, _| (), gather, select, scan, kth, gather_selected };
+pub(crate) const KERNELS: VectorKernels = VectorKernels {
+    name: "scalar",
+    cull,
+    prefetch: |_, _| (),
+    gather,
+    select,
+    scan,
+    kth,
+    gather_selected,
+    shared: shared::SCALAR,
+};
 
 fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
     let position = position.to_array();
@@ -116,5 +126,6 @@ fn kth(selected: &[Selected], k: usize, distances_sq: &mut Vec<f32>) -> f32 {
     for selected in selected {
         distances_sq.extend(selected.found().map(|(_, d2)| d2));
     }
-    kth_least(distances_sq, k)
+    pad(distances_sq);
+    kth_least(distances_sq, -1.0, k)
 }

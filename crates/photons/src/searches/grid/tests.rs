@@ -1,7 +1,7 @@
 //! Every set of vector kernels against the scalar one, bit for bit, and answers that must not depend on the batch.
 
 use super::*;
-use support::{SEED, queries, sets};
+use support::{SEED, crowds, queries, sets};
 
 #[path = "../../../tests/support/mod.rs"]
 mod support;
@@ -31,10 +31,11 @@ fn vector_kernels_equal_the_scalar_kernel_bit_for_bit() {
                 };
                 assert_eq!(gather(&vector), gather(&scalar), "{context}, {kernel:?}");
             }
-            for k in [1, 40, 1000] {
+            let crowds = crowds(&set, 40);
+            for (k, kernel) in [1, 7, 40, 1000].into_iter().zip(KERNELS) {
                 let gather = |grid: &Grid| {
-                    let mut out = vec![GatheredNearest::default(); queries.len()];
-                    grid.gather_nearest(&queries, k, Kernel::Gaussian, &mut out);
+                    let mut out = vec![GatheredNearest::default(); crowds.len()];
+                    grid.gather_nearest(&crowds, k, kernel, &mut out);
                     let sums = |g: &GatheredNearest| [g.flux.x, g.flux.y, g.flux.z, g.farthest_sq].map(f32::to_bits);
                     out.iter().map(|g| (g.count, sums(g))).collect::<Vec<_>>()
                 };
@@ -85,9 +86,10 @@ fn results_depend_on_neither_batch_nor_threads() {
             grid.gather(std::slice::from_ref(query), Kernel::Epanechnikov, &mut out);
             assert_eq!(bits(&out), [*expected], "seed {SEED}: alone on '{}': {query:?}", set.name);
         }
-        let mut nearest = vec![GatheredNearest::default(); queries.len()];
-        grid.gather_nearest(&queries, 30, Kernel::Epanechnikov, &mut nearest);
-        for (query, expected) in queries.iter().zip(&nearest).take(300) {
+        let crowds = crowds(set, 200);
+        let mut nearest = vec![GatheredNearest::default(); crowds.len()];
+        grid.gather_nearest(&crowds, 30, Kernel::Epanechnikov, &mut nearest);
+        for (query, expected) in crowds.iter().zip(&nearest) {
             let mut out = [GatheredNearest::default()];
             grid.gather_nearest(std::slice::from_ref(query), 30, Kernel::Epanechnikov, &mut out);
             assert_eq!(&out[0], expected, "seed {SEED}: 30 nearest, alone on '{}': {query:?}", set.name);

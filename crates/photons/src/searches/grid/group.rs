@@ -1,0 +1,201 @@
+//! Searches for the nearest, neighbours together: queries that lie close to one another look the photons around them up once.
+
+use super::Grid;
+use super::cells::Cells;
+use super::kernels::SharedKernels;
+use super::narrow::{ATTEMPTS, NearestFinder, WIDER, wider_for};
+use super::shared::Share;
+use crate::inclusion::PreparedQuery;
+use crate::kernel::PreparedKernel;
+use crate::{GatherQuery, GatheredNearest, Kernel};
+use photinus_geometry::{Aabb, Vec3};
+use rayon::prelude::*;
+
+/// Queries that are worth a task of their own, in their order.
+const QUERIES_A_TASK: usize = 1 << 15;
+/// Fewer queries than this look photons up by themselves.
+const FEW: usize = 3;
+/// Longest way between queries of a group, in radii that the last search needed.
+const LONGEST: f32 = 0.7;
+/// Balls narrower than this are left to searches one by one: squares of distances in them may underflow.
+const LEAST_RADIUS: f32 = 1e-15;
+/// Balls wider than this are, too: squares may overflow.
+const GREATEST_RADIUS: f32 = 1e18;
+/// What rounding may add to a distance, as a part of it, with a margin.
+const SLACK: f32 = 1e-5;
+
+impl Grid {
+    /// Sums the nearest of each query of a batch; returns the photons tested.
+    pub(super) fn gather_nearest_batch(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        kernel: Kernel,
+        parallel: bool,
+        out: &mut [GatheredNearest],
+    ) -> u64 {
+        let mut order: Vec<(u64, u32)> = (0u32..)
+            .zip(queries)
+            .map(|(i, query)| (self.cells.neighbourhood(query.position, query.normal), i))
+            .collect();
+        order.sort_unstable();
+        let answer = |part: &[(u64, u32)]| {
+            let mut group =
+                Group { grid: self, k, finder: NearestFinder::new(), answers: Vec::with_capacity(part.len()) };
+            let same = |a: &(u64, u32), b: &(u64, u32)| {
+                Cells::same_neighbourhood(a.0, b.0)
+                    && queries[a.1 as usize].max_depth == queries[b.1 as usize].max_depth
+            };
+            let mut members = Vec::new();
+            for part in part.chunk_by(same) {
+                members.clear();
+                for (i, query) in part.iter().map(|(_, i)| (*i, &queries[*i as usize])) {
+                    let member = Member { index: i, radius: query.radius, query: PreparedQuery::new(query, kernel) };
+                    // A question that makes no sense has no neighbours.
+                    if member.query.r2 >= 0.0 { members.push(member) } else { group.alone(&member) }
+                }
+                group.answer(&members);
+            }
+            (group.answers, group.finder.tested)
+        };
+        let mut tested = 0;
+        let parts: Vec<_> = match parallel {
+            true => order.par_chunks(QUERIES_A_TASK).map(answer).collect(),
+            false => vec![answer(&order)],
+        };
+        for (answers, tested_here) in parts {
+            answers.into_iter().for_each(|(i, answer)| out[i as usize] = answer);
+            tested += tested_here;
+        }
+        tested
+    }
+}
+
+/// A query of a group.
+#[derive(Clone, Copy)]
+struct Member {
+    /// Its place in the batch.
+    index: u32,
+    radius: f32,
+    query: PreparedQuery,
+}
+
+/// Answers groups of queries one after the other.
+struct Group<'a> {
+    grid: &'a Grid,
+    k: u32,
+    finder: NearestFinder,
+    answers: Vec<(u32, GatheredNearest)>,
+}
+
+impl Group<'_> {
+    /// Answers members that are neighbours, in pieces no longer than a search reaches.
+    fn answer(&mut self, mut members: &[Member]) {
+        while !members.is_empty() {
+            let longest = LONGEST * self.finder.last_radius;
+            let mut bounds = Aabb::EMPTY;
+            let fits = |member: &&Member| {
+                bounds = bounds.union(Aabb::around([member.query.position]));
+                bounds.size().max_element() <= longest
+            };
+            let count = members.iter().take_while(fits).count().max(1);
+            let (piece, rest) = members.split_at(count);
+            if piece.len() < FEW {
+                piece.iter().for_each(|member| self.alone(member));
+            } else {
+                self.together(piece);
+            }
+            members = rest;
+        }
+    }
+
+    fn alone(&mut self, member: &Member) {
+        let answer = self.grid.nearest_alone(member.query, member.radius, self.k, &mut self.finder);
+        self.answers.push((member.index, answer));
+    }
+
+    fn together(&mut self, members: &[Member]) {
+        let bounds = Aabb::around(members.iter().map(|member| member.query.position));
+        let ball = Ball { centre: (bounds.min + bounds.max) * 0.5, half: 0.5 * bounds.diagonal() };
+        let most = members.iter().fold(0f32, |most, member| most.max(member.radius));
+        let mut reach = (self.finder.last_radius * WIDER).min(most);
+        let mut left = members;
+        for _ in 0..ATTEMPTS {
+            if left.is_empty() || !self.share(&ball, reach, members) {
+                break;
+            }
+            let (answered, found) = self.answer_shared(&ball, left);
+            left = &left[answered..];
+            reach = (reach * wider_for(self.k, found)).min(most);
+        }
+        left.iter().for_each(|member| self.alone(member));
+    }
+
+    /// Collects the photons within a distance of all members; not where that is too small or too large to reckon with.
+    fn share(&mut self, ball: &Ball, reach: f32, members: &[Member]) -> bool {
+        let extent = ball.extent(reach);
+        if !(extent > LEAST_RADIUS && extent < GREATEST_RADIUS) {
+            return false;
+        }
+        let mut query = members[0].query;
+        let same_normal = members.iter().all(|member| member.query.normal == query.normal);
+        (query.position, query.r2) = (ball.centre, extent * extent);
+        let finder = &mut self.finder;
+        self.grid.find_blocks(query.position, extent, query.r2, &mut finder.scratch);
+        finder.tested += self.grid.photons_in(&finder.scratch);
+        let share = Share { query, same_normal };
+        (self.grid.kernels.shared.collect)(&self.grid.blocks, &finder.scratch.hits, &share, &mut finder.shared);
+        finder.shared_extent = extent;
+        true
+    }
+
+    /// Answers members by the photons shared, up to the first whose nearest are not all among them; returns how many, and how
+    /// many photons that one found.
+    fn answer_shared(&mut self, ball: &Ball, members: &[Member]) -> (usize, u32) {
+        let SharedKernels { nearest, gather, .. } = self.grid.kernels.shared;
+        let finder = &mut self.finder;
+        let photons = finder.shared.photons();
+        for (i, member) in members.iter().enumerate() {
+            let mut query = member.query;
+            let whole = query.r2;
+            let reach = ball.reach_from(query.position, finder.shared_extent);
+            let is_whole = reach >= member.radius;
+            if !is_whole {
+                query.r2 = reach * reach;
+            }
+            let guess_sq = finder.last_radius * finder.last_radius;
+            let found = nearest(&mut finder.shared, &query, self.k as usize, guess_sq);
+            finder.tested += photons;
+            let has_all = found.count >= self.k;
+            if !(has_all || is_whole) {
+                return (i, found.count);
+            }
+            let radius = if has_all { found.limit_sq.sqrt() } else { member.radius };
+            finder.last_radius = radius;
+            query.r2 = if has_all { found.limit_sq } else { whole };
+            query.kernel = PreparedKernel::new(query.kernel.kernel, radius);
+            let sums = gather(&finder.shared, &query);
+            let answer = GatheredNearest { flux: sums.flux, count: sums.count, farthest_sq: found.limit_sq };
+            self.answers.push((member.index, answer));
+        }
+        (members.len(), self.k)
+    }
+}
+
+/// Where the members of a group lie.
+struct Ball {
+    centre: Vec3,
+    half: f32,
+}
+
+impl Ball {
+    /// Distance from the centre within which everything lies that is within `reach` of a member.
+    fn extent(&self, reach: f32) -> f32 {
+        (reach + self.half) * (1.0 + 4.0 * SLACK)
+    }
+
+    /// A distance from a member within which everything lies within `extent` of the centre; zero where there is none.
+    fn reach_from(&self, member: Vec3, extent: f32) -> f32 {
+        (extent * (1.0 - SLACK) - (member - self.centre).length() * (1.0 + SLACK)).max(0.0)
+    }
+}

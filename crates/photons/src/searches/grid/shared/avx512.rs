@@ -1,0 +1,206 @@
+//! Shared photons with 512-bit vectors: a row a vector.
+//!
+//! No fused multiply-add: every operation rounds as the scalar kernel's does.
+
+use super::{Found, Row, Share, Shared};
+use crate::Gathered;
+use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
+use crate::inclusion::PreparedQuery;
+use crate::photon::LOW_MASK;
+use crate::searches::grid::avx512::{distances_sq, dot, floats, normals, splat, tree_sum, weights, words};
+use crate::searches::grid::blocks::{Block, LANES};
+use crate::searches::grid::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, SharedKernels, kernel_index};
+use crate::searches::grid::kth::{kth_least, pad};
+use photinus_geometry::Vec3;
+use std::arch::x86_64::*;
+
+/// For processors that have AVX-512F, POPCNT and BMI1.
+pub(crate) const KERNELS: SharedKernels = SharedKernels { collect, nearest, gather };
+
+/// The `k`-th squared distance is looked for between these parts of the guess first.
+const BRACKET: [f32; 2] = [0.8, 1.25];
+
+fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
+    // SAFETY: these kernels are handed out only where the processor has AVX-512F, POPCNT and BMI1.
+    unsafe { collect_blocks(blocks, hits, share, shared) }
+}
+
+fn nearest(shared: &mut Shared, query: &PreparedQuery, k: usize, guess_sq: f32) -> Found {
+    // SAFETY: as above.
+    unsafe {
+        if shared.same_normal {
+            nearest_rows::<true>(shared, query, k, guess_sq)
+        } else {
+            nearest_rows::<false>(shared, query, k, guess_sq)
+        }
+    }
+}
+
+fn gather(shared: &Shared, query: &PreparedQuery) -> Gathered {
+    // SAFETY: as above.
+    unsafe {
+        match kernel_index(query.kernel.kernel) {
+            CONSTANT => gather_rows::<CONSTANT>(shared, query),
+            CONE => gather_rows::<CONE>(shared, query),
+            EPANECHNIKOV => gather_rows::<EPANECHNIKOV>(shared, query),
+            _ => gather_rows::<GAUSSIAN>(shared, query),
+        }
+    }
+}
+
+/// What a row holds of a block's photons.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn fields(block: &Block, normal: [__m512; 3], quarter: __m512) -> [__m512; 11] {
+    let flux = words(&block.flux);
+    let scale = _mm512_and_si512(_mm512_srli_epi32::<2>(flux), _mm512_set1_epi32(RAW_SCALE_MASK as i32));
+    let [r, g, b] =
+        MANTISSA_MASKS.map(|mask| _mm512_cvtepi32_ps(_mm512_and_si512(flux, _mm512_set1_epi32(mask as i32))));
+    let [nx, ny, nz] = normal;
+    let scale = _mm512_castsi512_ps(scale);
+    [floats(&block.x), floats(&block.y), floats(&block.z), nx, ny, nz, quarter, scale, r, g, b]
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn set_lanes(row: &mut Row, lanes: __mmask16, fields: &[__m512; 11]) {
+    let [px, py, pz] = &mut row.position;
+    let [nx, ny, nz] = &mut row.normal;
+    let [r, g, b] = &mut row.mantissas;
+    let places = [px, py, pz, nx, ny, nz, &mut row.quarter, &mut row.scale, r, g, b];
+    for (place, field) in places.into_iter().zip(fields) {
+        // SAFETY: the array holds the sixteen numbers of which some are written.
+        unsafe { _mm512_mask_storeu_ps(place.as_mut_ptr(), lanes, *field) };
+    }
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn collect_blocks(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
+    shared.start(share);
+    let query = &share.query;
+    let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
+    let low_limit = _mm512_set1_epi32(query.low_limit as i32);
+    // Rows before this one are full.
+    let mut first_open = 0;
+    for block in hits {
+        let block = &blocks[*block as usize];
+        let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(distances_sq(block, position), r2);
+        if near == 0 {
+            continue;
+        }
+        let surface = words(&block.surface);
+        let low = _mm512_and_si512(surface, _mm512_set1_epi32(LOW_MASK as i32));
+        let mut wanted = _mm512_mask_cmple_epu32_mask(near, low, low_limit);
+        let normal = normals(surface);
+        let quarter = _mm512_mul_ps(_mm512_set1_ps(0.25), dot(normal, normal));
+        if share.same_normal {
+            wanted = within_60(wanted, normal, quarter, facing);
+        }
+        let fields = fields(block, normal, quarter);
+        let mut row = first_open;
+        while wanted != 0 {
+            if row == shared.filled.len() {
+                shared.add_row();
+            }
+            let taken = wanted & !shared.filled[row];
+            if taken != 0 {
+                set_lanes(&mut shared.rows[row], taken, &fields);
+                shared.filled[row] |= taken;
+                wanted &= !taken;
+            }
+            if shared.filled[row] == __mmask16::MAX && row == first_open {
+                first_open += 1;
+            }
+            row += 1;
+        }
+    }
+}
+
+/// Those lanes whose normals are within 60 degrees of the one that the query is facing.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn within_60(lanes: __mmask16, normal: [__m512; 3], quarter: __m512, facing: [__m512; 3]) -> __mmask16 {
+    let cos = dot(normal, facing);
+    let front = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(lanes, cos, _mm512_setzero_ps());
+    _mm512_mask_cmp_ps_mask::<_CMP_GE_OQ>(front, _mm512_mul_ps(cos, cos), quarter)
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn nearest_rows<const SAME_NORMAL: bool>(shared: &mut Shared, query: &PreparedQuery, k: usize, guess_sq: f32) -> Found {
+    let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
+    let low = BRACKET[0] * guess_sq;
+    let (bracket_low, bracket_high) = (_mm512_set1_ps(low), _mm512_set1_ps(BRACKET[1] * guess_sq));
+    let infinite = _mm512_set1_ps(f32::INFINITY);
+    let rows = shared.filled.len();
+    let Shared { rows: all_rows, distances_sq, some, .. } = shared;
+    let all_rows = &all_rows[..rows];
+    distances_sq.resize(rows, [0.0; LANES]);
+    some.clear();
+    some.reserve((rows + 1) * LANES);
+    let (mut count, mut below, mut between) = (0, 0, 0);
+    for (row, out) in all_rows.iter().zip(&mut *distances_sq) {
+        let [x, y, z] = &row.position;
+        let d = [
+            _mm512_sub_ps(floats(x), position[0]),
+            _mm512_sub_ps(floats(y), position[1]),
+            _mm512_sub_ps(floats(z), position[2]),
+        ];
+        let d2 = dot(d, d);
+        let mut found = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, r2);
+        if !SAME_NORMAL {
+            let [x, y, z] = &row.normal;
+            found = within_60(found, [floats(x), floats(y), floats(z)], floats(&row.quarter), facing);
+        }
+        // SAFETY: the array holds the sixteen numbers written.
+        unsafe { _mm512_storeu_ps(out.as_mut_ptr(), _mm512_mask_blend_ps(found, infinite, d2)) };
+        let far = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(found, d2, bracket_low);
+        let inside = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(far, d2, bracket_high);
+        // SAFETY: there is room for sixteen a row and sixteen more, of which the first ones, as many as `inside` has
+        // bits, are kept.
+        unsafe { _mm512_storeu_ps(some.as_mut_ptr().add(between), _mm512_maskz_compress_ps(inside, d2)) };
+        count += found.count_ones();
+        below += (found & !far).count_ones() as usize;
+        between += inside.count_ones() as usize;
+    }
+    let limit_sq = if (count as usize) < k {
+        farthest(distances_sq)
+    } else if below < k && k <= below + between {
+        // SAFETY: that many were written.
+        unsafe { some.set_len(between) };
+        pad(some);
+        kth_least(some, low, k - below)
+    } else {
+        kth_least(distances_sq.as_flattened(), -1.0, k)
+    };
+    Found { count, limit_sq }
+}
+
+/// The largest finite number; 0 without any.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn farthest(distances_sq: &[[f32; LANES]]) -> f32 {
+    let infinite = _mm512_set1_ps(f32::INFINITY);
+    let largest = distances_sq.iter().fold(_mm512_setzero_ps(), |largest, lanes| {
+        let d2 = floats(lanes);
+        _mm512_mask_max_ps(largest, _mm512_cmp_ps_mask::<_CMP_LT_OQ>(d2, infinite), largest, d2)
+    });
+    _mm512_reduce_max_ps(largest)
+}
+
+#[target_feature(enable = "avx512f,popcnt")]
+fn gather_rows<const KERNEL: u8>(shared: &Shared, query: &PreparedQuery) -> Gathered {
+    let r2 = _mm512_set1_ps(query.r2);
+    let (inv_r2, inv_k) = (_mm512_set1_ps(query.kernel.inv_r2), _mm512_set1_ps(query.kernel.inv_k));
+    let mut flux = [_mm512_setzero_ps(); 3];
+    let mut count = 0;
+    for (row, d2) in shared.rows().iter().zip(&shared.distances_sq) {
+        let d2 = floats(d2);
+        let found = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, r2);
+        let weight = _mm512_mul_ps(floats(&row.scale), weights::<KERNEL>(d2, inv_r2, inv_k));
+        for (sum, mantissas) in flux.iter_mut().zip(&row.mantissas) {
+            *sum = _mm512_mask_add_ps(*sum, found, *sum, _mm512_mul_ps(floats(mantissas), weight));
+        }
+        count += found.count_ones();
+    }
+    Gathered { flux: Vec3::from_array(flux.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
+}

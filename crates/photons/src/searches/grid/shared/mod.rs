@@ -1,0 +1,201 @@
+//! Photons that neighbouring queries share: those around all of them, with their fields taken apart, so that each query tests
+//! a few hundred photons that are near instead of looking blocks up.
+//!
+//! A photon keeps the lane that it has in its block and stays behind those of its lane in earlier blocks, so that sums add
+//! the same numbers in the same order as over the blocks themselves.
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod avx2;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod avx512;
+
+use super::blocks::{Block, LANES};
+use super::kernels::SharedKernels;
+use super::kth::kth_least;
+use crate::Gathered;
+use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
+use crate::inclusion::PreparedQuery;
+use crate::octahedral::decode_scaled;
+use crate::photon::{NORMAL_MAX, normal_code};
+use photinus_geometry::Vec3;
+
+/// The kernels a lane at a time, and as much at a time as the compiler sees fit.
+pub(crate) const SCALAR: SharedKernels = SharedKernels { collect, nearest, gather };
+
+type Lanes = [f32; LANES];
+
+/// Photons, one a lane, with their fields taken apart.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Row {
+    /// NaN where the lane is empty, which no query finds.
+    pub(crate) position: [Lanes; 3],
+    /// Normal of any length, and a quarter of that length squared: what the inclusion test compares.
+    pub(crate) normal: [Lanes; 3],
+    pub(crate) quarter: Lanes,
+    /// Flux as [`crate::flux`] has it: raw scale, and mantissas in their places.
+    pub(crate) scale: Lanes,
+    pub(crate) mantissas: [Lanes; 3],
+}
+
+impl Row {
+    pub(crate) const EMPTY: Self = Self {
+        position: [[f32::NAN; LANES]; 3],
+        normal: [[0.0; LANES]; 3],
+        quarter: [0.0; LANES],
+        scale: [0.0; LANES],
+        mantissas: [[0.0; LANES]; 3],
+    };
+
+    fn set(&mut self, lane: usize, block: &Block) {
+        let normal = decode_scaled(normal_code(block.surface[lane]), NORMAL_MAX);
+        let mantissas = placed_mantissas(block.flux[lane]);
+        for axis in 0..3 {
+            self.position[axis][lane] = [block.x, block.y, block.z][axis][lane];
+            self.normal[axis][lane] = normal[axis];
+            self.mantissas[axis][lane] = mantissas[axis];
+        }
+        self.quarter[lane] = 0.25 * ((normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z);
+        self.scale[lane] = raw_scale(block.flux[lane]);
+    }
+}
+
+/// Which photons are shared: those that a query finds which stands for all, with its ball and its depth.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Share {
+    pub(crate) query: PreparedQuery,
+    /// Whether all queries have its normal: photons are then tested for it once.
+    pub(crate) same_normal: bool,
+}
+
+/// The photons shared, and what the last query found among them.
+#[derive(Debug, Default)]
+pub(crate) struct Shared {
+    /// Rows in use, and behind them others that keep their memory.
+    rows: Vec<Row>,
+    /// Photons in each row in use, a bit a lane.
+    filled: Vec<u16>,
+    /// Whether the normals of `rows` have passed the test.
+    same_normal: bool,
+    /// Squared distance of each lane of each row where it is found, infinite elsewhere.
+    distances_sq: Vec<Lanes>,
+    /// Scratch of the kernels.
+    some: Vec<f32>,
+}
+
+/// What a query for the nearest found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Found {
+    /// Within the query's own radius.
+    pub(crate) count: u32,
+    /// Squared distance of the `k`-th, or of the farthest where there are fewer; 0 without any.
+    pub(crate) limit_sq: f32,
+}
+
+/// See [`super::kernels::Collect`].
+#[inline(always)]
+fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
+    shared.start(share);
+    let query = &share.query;
+    for block in hits.iter().map(|block| &blocks[*block as usize]) {
+        for (lane, d2) in block.distances_sq(query.position).into_iter().enumerate() {
+            let surface = block.surface[lane];
+            let is_wanted = || if share.same_normal { query.accepts(surface) } else { query.is_shallow(surface) };
+            if d2 <= query.r2 && is_wanted() {
+                let height = shared.filled.iter().position(|filled| filled & 1 << lane == 0);
+                let height = height.unwrap_or_else(|| shared.add_row());
+                shared.filled[height] |= 1 << lane;
+                shared.rows[height].set(lane, block);
+            }
+        }
+    }
+}
+
+/// See [`super::kernels::Nearest`].
+#[inline(always)]
+fn nearest(shared: &mut Shared, query: &PreparedQuery, k: usize, _: f32) -> Found {
+    shared.distances_sq.clear();
+    let mut counts = [0u32; LANES];
+    let mut farthest = [0f32; LANES];
+    let (p, n) = (query.position, query.normal);
+    for row in &shared.rows[..shared.filled.len()] {
+        let mut out = [0f32; LANES];
+        for i in 0..LANES {
+            let d = [row.position[0][i] - p.x, row.position[1][i] - p.y, row.position[2][i] - p.z];
+            let d2 = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+            let dot = (row.normal[0][i] * n.x + row.normal[1][i] * n.y) + row.normal[2][i] * n.z;
+            let is_alike = shared.same_normal | ((dot > 0.0) & (dot * dot >= row.quarter[i]));
+            let is_found = (d2 <= query.r2) & is_alike;
+            out[i] = if is_found { d2 } else { f32::INFINITY };
+            counts[i] += u32::from(is_found);
+            farthest[i] = if is_found & (d2 > farthest[i]) { d2 } else { farthest[i] };
+        }
+        shared.distances_sq.push(out);
+    }
+    let count = counts.into_iter().sum::<u32>();
+    let limit_sq = if count as usize >= k {
+        kth_least(shared.distances_sq.as_flattened(), -1.0, k)
+    } else {
+        farthest.into_iter().fold(0f32, |a, b| if b > a { b } else { a })
+    };
+    Found { count, limit_sq }
+}
+
+/// See [`super::kernels::GatherShared`].
+#[inline(always)]
+fn gather(shared: &Shared, query: &PreparedQuery) -> Gathered {
+    let mut flux = [[0f32; LANES]; 3];
+    let mut count = 0;
+    for (row, d2) in shared.rows().iter().zip(&shared.distances_sq) {
+        for lane in (0..LANES).filter(|lane| d2[*lane] <= query.r2) {
+            let weight = row.scale[lane] * query.kernel.weight(d2[lane]);
+            for (sum, mantissa) in flux.iter_mut().zip(&row.mantissas) {
+                sum[lane] += mantissa[lane] * weight;
+            }
+            count += 1;
+        }
+    }
+    let tree = |mut lanes: Lanes| {
+        let mut half = LANES / 2;
+        while half > 0 {
+            for i in 0..half {
+                lanes[i] += lanes[i + half];
+            }
+            half /= 2;
+        }
+        lanes[0]
+    };
+    Gathered { flux: Vec3::from_array(flux.map(tree)) * PLACED_UNITS, count }
+}
+
+impl Shared {
+    /// Forgets what was shared.
+    #[inline]
+    fn start(&mut self, share: &Share) {
+        self.filled.clear();
+        self.same_normal = share.same_normal;
+    }
+
+    /// The index of a new row.
+    #[inline]
+    fn add_row(&mut self) -> usize {
+        let row = self.filled.len();
+        match self.rows.get_mut(row) {
+            Some(row) => row.position[0] = [f32::NAN; LANES],
+            None => self.rows.push(Row::EMPTY),
+        }
+        self.filled.push(0);
+        row
+    }
+
+    /// The rows in use.
+    #[inline]
+    fn rows(&self) -> &[Row] {
+        &self.rows[..self.filled.len()]
+    }
+
+    /// Photons that a query tests.
+    pub(crate) fn photons(&self) -> u64 {
+        self.filled.iter().map(|filled| u64::from(filled.count_ones())).sum()
+    }
+}
