@@ -18,7 +18,7 @@ use photinus_profile::queries::RayKind;
 pub(crate) const DEFAULT_LEVELS: u32 = 8;
 
 /// Edge of a tile in pixels: its estimates are made together, as rays from all over it end in the same places.
-const TILE: u32 = 96;
+const TILE: u32 = 64;
 
 struct Node {
     ray: Ray,
@@ -159,8 +159,11 @@ impl EyePass<'_> {
         let mut sampler = sampler();
         sampler.start_vertex();
         for (child, side) in [LobeSet::REFLECTION, LobeSet::TRANSMISSION].into_iter().enumerate() {
-            let (choice, u) = (sampler.next_1d(), sampler.next_2d());
             let set = LobeSet::CONTINUE & side;
+            if !bsdf.has(set) {
+                continue;
+            }
+            let (choice, u) = (sampler.next_1d(), sampler.next_2d());
             let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { continue };
             next.push(Node {
                 ray: Ray::new(point.ray_origin(s.wi), s.wi),
