@@ -1,10 +1,14 @@
 //! Pictures with a pyramid of smaller copies, read by nearest pixel, bilinear or trilinear interpolation.
 
 use super::{linear_to_srgb8, srgb8_to_linear};
+use arrayvec::ArrayVec;
 use photinus_geometry::{Vec2, Vec4};
 use photinus_scene::{Bitmap, BitmapPixels, TextureFilter, WrapMode};
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Rows of a level that one task makes.
+const ROWS_A_TASK: usize = 16;
 
 /// A picture and its pyramid: level 0 is the picture, each further level about half as wide and high, down to 1 x 1.
 #[derive(Clone, Debug)]
@@ -38,49 +42,59 @@ fn is_sound(bitmap: &Bitmap) -> bool {
     bitmap.width >= 1 && bitmap.height >= 1 && pixels == bitmap.width as usize * bitmap.height as usize
 }
 
-/// The source pixels of pixel `i` of `to` when `from` pixels shrink to `to`, and the share of each: at most four, as
-/// no level is less than a third of the one above.
-fn box_taps(i: u32, from: u32, to: u32) -> impl Iterator<Item = (u32, f32)> {
+/// The source pixels of a pixel of the next level, and the share of each: at most four, as no level is less than a
+/// third of the one above.
+type Taps = ArrayVec<(u32, f32), 4>;
+
+/// The taps of each of `to` pixels, where `from` pixels shrink to them.
+fn box_taps(from: u32, to: u32) -> Vec<Taps> {
     let ratio = f64::from(from) / f64::from(to);
-    let (start, end) = (f64::from(i) * ratio, f64::from(i + 1) * ratio);
-    let last = (end.ceil() as u32).min(from);
-    (start as u32..last).filter_map(move |x| {
-        let overlap = end.min(f64::from(x) + 1.0) - start.max(f64::from(x));
-        (overlap > 1e-9).then_some((x, (overlap / ratio) as f32))
-    })
+    let taps = |i: u32| {
+        let (start, end) = (f64::from(i) * ratio, f64::from(i + 1) * ratio);
+        let last = (end.ceil() as u32).min(from);
+        let share = |x: u32| {
+            let overlap = end.min(f64::from(x) + 1.0) - start.max(f64::from(x));
+            (overlap > 1e-9).then_some((x, (overlap / ratio) as f32))
+        };
+        (start as u32..last).filter_map(share).collect()
+    };
+    (0..to).map(taps).collect()
 }
 
 /// The next smaller level: every pixel is the mean of the area that it covers.
 fn halve(from: &Bitmap) -> Bitmap {
     let (width, height) = ((from.width / 2).max(1), (from.height / 2).max(1));
-    let row = |y: u32| {
-        (0..width).map(move |x| {
-            let mut sum = Vec4::ZERO;
-            for (sy, wy) in box_taps(y, from.height, height) {
-                for (sx, wx) in box_taps(x, from.width, width) {
-                    sum += texel(from, sx, sy) * (wx * wy);
-                }
-            }
-            sum
-        })
-    };
-    let pixels: Vec<Vec4> = (0..height).into_par_iter().flat_map_iter(row).collect();
     let byte = |v: f32| (v * 255.0 + 0.5).clamp(0.0, 255.0) as u8;
     let pixels = match from.pixels {
-        BitmapPixels::Rgba8 { srgb: true, .. } => BitmapPixels::Rgba8 {
-            data: pixels
-                .iter()
-                .map(|p| [linear_to_srgb8(p.x), linear_to_srgb8(p.y), linear_to_srgb8(p.z), byte(p.w)])
-                .collect(),
-            srgb: true,
-        },
-        BitmapPixels::Rgba8 { srgb: false, .. } => BitmapPixels::Rgba8 {
-            data: pixels.iter().map(|p| [byte(p.x), byte(p.y), byte(p.z), byte(p.w)]).collect(),
-            srgb: false,
-        },
-        BitmapPixels::RgbaF32(_) => BitmapPixels::RgbaF32(pixels.iter().map(|p| p.to_array()).collect()),
+        BitmapPixels::Rgba8 { srgb: true, .. } => {
+            let encoded = |p: Vec4| [linear_to_srgb8(p.x), linear_to_srgb8(p.y), linear_to_srgb8(p.z), byte(p.w)];
+            BitmapPixels::Rgba8 { data: means(from, width, height, encoded), srgb: true }
+        }
+        BitmapPixels::Rgba8 { srgb: false, .. } => {
+            let bytes = |p: Vec4| p.to_array().map(byte);
+            BitmapPixels::Rgba8 { data: means(from, width, height, bytes), srgb: false }
+        }
+        BitmapPixels::RgbaF32(_) => BitmapPixels::RgbaF32(means(from, width, height, |p| p.to_array())),
     };
     Bitmap { width, height, pixels }
+}
+
+/// The means of the areas of a bitmap that the pixels of one of this size cover, in the form that `pixel` gives them.
+fn means<T: Copy + Default + Send>(from: &Bitmap, width: u32, height: u32, pixel: impl Fn(Vec4) -> T + Sync) -> Vec<T> {
+    let (columns, rows) = (box_taps(from.width, width), box_taps(from.height, height));
+    let mut data = vec![T::default(); width as usize * height as usize];
+    data.par_chunks_exact_mut(width as usize).zip(&rows).with_min_len(ROWS_A_TASK).for_each(|(line, row)| {
+        for (out, column) in line.iter_mut().zip(&columns) {
+            let mut sum = Vec4::ZERO;
+            for &(y, wy) in row {
+                for &(x, wx) in column {
+                    sum += texel(from, x, y) * (wx * wy);
+                }
+            }
+            *out = pixel(sum);
+        }
+    });
+    data
 }
 
 /// A coordinate folded into 0..=1 by the wrap mode; 0 where it is not finite.

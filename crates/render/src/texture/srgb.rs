@@ -39,16 +39,35 @@ pub fn srgb8_to_linear(byte: u8) -> f32 {
     DECODED[byte as usize]
 }
 
-/// The sRGB byte whose linear light is nearest to `linear`; out of range clamps, NaN is 0.
-pub fn linear_to_srgb8(linear: f32) -> u8 {
-    let table = &DECODED;
-    let above = table.partition_point(|&v| v < linear);
-    match above {
-        0 => 0,
-        256 => 255,
-        i if linear - table[i - 1] < table[i] - linear => (i - 1) as u8,
-        i => i as u8,
+/// Parts of 0..1 that have their own entry point into the decoded values: narrow enough for one or two of them each.
+const PARTS: usize = 4096;
+
+/// How many decoded values lie below the lower end of each part.
+const BELOW: [u8; PARTS] = {
+    let mut table = [0; PARTS];
+    let (mut part, mut below) = (0, 0);
+    while part < PARTS {
+        while DECODED[below] < part as f32 / PARTS as f32 {
+            below += 1;
+        }
+        table[part] = below as u8;
+        part += 1;
     }
+    table
+};
+
+/// The sRGB byte whose linear light is nearest to `linear`; out of range clamps, NaN is 0.
+#[inline]
+pub fn linear_to_srgb8(linear: f32) -> u8 {
+    if linear >= 1.0 {
+        return 255;
+    }
+    // A product with a power of two is exact; the conversion takes negative numbers and NaN to 0.
+    let mut above = usize::from(BELOW[(linear * PARTS as f32) as usize]);
+    while DECODED[above] < linear {
+        above += 1;
+    }
+    if above > 0 && linear - DECODED[above - 1] < DECODED[above] - linear { above as u8 - 1 } else { above as u8 }
 }
 
 #[cfg(test)]
@@ -72,5 +91,23 @@ mod tests {
         assert_eq!(linear_to_srgb8(f32::NAN), 0);
         assert_eq!(linear_to_srgb8(-1.0), 0);
         assert_eq!(linear_to_srgb8(7.0), 255);
+        assert_eq!(linear_to_srgb8(f32::INFINITY), 255);
+    }
+
+    /// Against a search of the whole table: at and beside every decoded value, every middle between two and the ends of
+    /// every part.
+    #[test]
+    fn bytes_are_the_nearest() {
+        let nearest = |linear: f32| {
+            let above = DECODED.partition_point(|&v| v < linear).min(255);
+            if above > 0 && linear - DECODED[above - 1] < DECODED[above] - linear { above - 1 } else { above }
+        };
+        let middles = DECODED.windows(2).map(|w| 0.5 * (w[0] + w[1]));
+        let parts = (0..=PARTS).map(|i| i as f32 / PARTS as f32);
+        for x in DECODED.into_iter().chain(middles).chain(parts) {
+            for x in [x.next_down(), x, x.next_up()] {
+                assert_eq!(usize::from(linear_to_srgb8(x)), nearest(x), "{x}");
+            }
+        }
     }
 }

@@ -99,7 +99,7 @@ fn reading_corner(stage: &mut Stage) {
         bitmap::stripes(64, 4, hex(0xE2D8C3), hex(0x3F6A73), hex(0xC9973F))
     });
     seats::scatter_cushion(stage, chair.shift(3.0, 16.0, 1.5).yaw(-8.0), cloth, 14.0);
-    lamps::floor_lamp(stage, Place::at(-54.0, 0.0, -22.0), 260.0);
+    lamps::floor_lamp(stage, Place::at(-54.0, 0.0, -22.0), [260.0, 0.011 * 260.0]);
 }
 
 /// A full bookshelf, with a vase on top.

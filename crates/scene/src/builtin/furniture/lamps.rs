@@ -10,8 +10,9 @@ fn warm(radiance: f32) -> [f32; 3] {
     WARM.map(|c| c * radiance)
 }
 
-/// A conical shade around a bulb: radii below and above, height; the bulb is inside. Both are lamps.
-fn shade_and_bulb(stage: &mut Stage, place: Place, radii: [f32; 2], height: f32, radiance: f32) {
+/// A conical shade around a bulb: radii below and above, height; the bulb is inside. Both are lamps, of these radiances:
+/// cloth lets about a hundredth of a bulb's light through, thin paper around a weak bulb more.
+fn shade_and_bulb(stage: &mut Stage, place: Place, radii: [f32; 2], height: f32, [bulb, glow]: [f32; 2]) {
     let cloth = stage.paint("lampshade", 0xE9DCC0, Finish::Matte);
     let [low, high] = radii;
     let wall = 0.25;
@@ -24,16 +25,15 @@ fn shade_and_bulb(stage: &mut Stage, place: Place, radii: [f32; 2], height: f32,
         [low - wall, 0.0],
         [low, 0.0],
     ];
-    // The cloth lets about a hundredth of the bulb's radiance through.
-    stage.lamp("lampshade", cloth, revolve(&outline, 32).placed(place), warm(0.011 * radiance));
+    stage.lamp("lampshade", cloth, revolve(&outline, 32).placed(place), warm(glow));
     let black = stage.paint("bulb", 0x000000, Finish::Matte);
     let size = 0.16 * (low + high);
-    let bulb = revolve(&ball(size, 0.45 * height, 8), 12);
-    stage.lamp("bulb", black, bulb.placed(place), warm(radiance));
+    let glass = revolve(&ball(size, 0.45 * height, 8), 12);
+    stage.lamp("bulb", black, glass.placed(place), warm(bulb));
 }
 
-/// A standing lamp, 64 units high.
-pub fn floor_lamp(stage: &mut Stage, place: Place, radiance: f32) {
+/// A standing lamp, 64 units high; radiances of its bulb and its shade.
+pub fn floor_lamp(stage: &mut Stage, place: Place, radiance: [f32; 2]) {
     let brass = stage.brass();
     let base = profile(&[[7.0, 0.0], [7.0, 0.6], [4.0, 1.2], [1.1, 2.0], [0.55, 3.6]], 3);
     let mut outline = vec![[0.0, 0.0]];
@@ -52,8 +52,8 @@ pub fn floor_lamp(stage: &mut Stage, place: Place, radiance: f32) {
     shade_and_bulb(stage, place.shift(0.0, 48.0, 0.0), [9.0, 6.0], 14.0, radiance);
 }
 
-/// A table lamp on a glazed foot, 22 units high.
-pub fn table_lamp(stage: &mut Stage, place: Place, color: u32, radiance: f32) {
+/// A table lamp on a glazed foot, 22 units high; radiances of its bulb and its shade.
+pub fn table_lamp(stage: &mut Stage, place: Place, color: u32, radiance: [f32; 2]) {
     let glaze = stage.paint(&format!("glaze-{color:06x}"), color, Finish::Gloss);
     let mut outline = vec![[0.0, 0.0], [2.6, 0.0]];
     outline.extend(profile(&[[2.6, 0.5], [2.1, 1.0], [3.3, 3.6], [3.6, 5.8], [2.4, 8.6], [0.8, 10.4], [0.7, 11.6]], 3));
@@ -73,6 +73,26 @@ pub fn ceiling_lamp(stage: &mut Stage, place: Place, radius: f32, radiance: f32)
     let glass = stage.diffuse("opal-glass", linear(0xF2EADC));
     let dome = profile(&[[0.0, -3.6], [0.6 * radius, -3.2], [radius - 0.02, -1.8]], 4);
     stage.lamp("opal-glass", glass, revolve(&dome, 40).placed(place), warm(radiance));
+}
+
+/// A globe of opal glass on a brass rod: the place's origin is where the rod leaves the ceiling, the globe's middle
+/// `drop` below it. It lights walls and ceiling as much as the floor.
+pub fn globe_lamp(stage: &mut Stage, place: Place, drop: f32, radius: f32, radiance: f32) {
+    let brass = stage.brass();
+    let top = radius - drop;
+    let outline = [
+        [0.0, top - 0.4],
+        [0.34 * radius, top - 0.4],
+        [0.34 * radius, top + 0.2],
+        [0.4, top + 1.0],
+        [0.35, -1.4],
+        [2.6, -0.7],
+        [3.0, 0.0],
+        [0.0, 0.0],
+    ];
+    stage.mesh("globe-rod", brass, revolve(&outline, 20).placed(place));
+    let glass = stage.paint("opal-glass", 0xF2EADC, Finish::Matte);
+    stage.lamp("opal-glass", glass, revolve(&ball(radius, -drop, 14), 28).placed(place), warm(radiance));
 }
 
 /// A pendant over a table: cord, metal shade and bulb; the place's origin is where the cord leaves the ceiling.

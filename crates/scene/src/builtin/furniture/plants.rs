@@ -123,7 +123,7 @@ pub const KENTIA: Fronds = Fronds {
     rise: 84.0,
     droop: 95.0,
     leaflet: 0.5,
-    slender: 0.05,
+    slender: 0.035,
     arc: 200.0,
     color: 0x4C7A38,
 };
@@ -171,7 +171,7 @@ pub fn fronds(stage: &mut Stage, place: Place, kind: Fronds, triangles: usize, s
         width: kind.slender * lengths[i],
         widest: 0.35,
         droop: 30.0,
-        fold: 18.0,
+        fold: 10.0,
     };
     ribs.add(leaves(&spots, leaflet, left));
     stage.mesh("fronds", green, ribs);
@@ -205,7 +205,7 @@ pub fn grass(stage: &mut Stage, place: Place, [length, arc]: [f32; 2], triangles
         let mut dice = Dice::new(191 + u64::from(seed), k as u32);
         let shape = LeafShape {
             length: length * dice.between(0.55, 1.0),
-            width: 0.013 * length,
+            width: 0.009 * length,
             widest: 0.4,
             droop: dice.between(40.0, 120.0),
             fold: 0.0,
@@ -285,12 +285,12 @@ pub fn bamboo(stage: &mut Stage, place: Place, [spread, height, arc]: [f32; 3], 
                 .within(at)
                 .yaw(GOLDEN_ANGLE * j as f32)
                 .pitch(-dice.between(15.0, 50.0) * (1.0 - up));
-            spots.push((twig, length, 0.03));
+            spots.push((twig, length, 0.021));
             for leaf in 0..4 {
                 let out = length * (0.4 + 0.2 * leaf as f32);
                 let turn = if leaf % 2 == 0 { 1.0 } else { -1.0 } * dice.between(12.0, 55.0);
                 let at = twig.shift(0.0, 0.0, out).yaw(turn).pitch(dice.between(35.0, 95.0));
-                spots.push((at, height * dice.between(0.07, 0.12), 0.11));
+                spots.push((at, height * dice.between(0.07, 0.12), 0.077));
             }
         }
     }

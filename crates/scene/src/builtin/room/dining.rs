@@ -9,7 +9,7 @@ use crate::builtin::furniture::{ceramics, lamps, objects, plants, seats, shelves
 pub fn add(stage: &mut Stage, target: usize) {
     let table = Place::at(-46.0, FLOOR, 12.0);
     dining_group(stage, table);
-    lamps::pendant(stage, table.shift(0.0, CEILING - FLOOR, 0.0), 38.0, 0x2F4F4A, 42.0);
+    lamps::pendant(stage, table.shift(0.0, CEILING - FLOOR, 0.0), 38.0, 0x2F4F4A, 20.0);
     back_wall(stage);
 
     let grey = stage.paint("grey-glaze", 0x7E8583, Finish::Gloss);
@@ -18,7 +18,7 @@ pub fn add(stage: &mut Stage, target: usize) {
     let front = Place::at(-64.0, FLOOR, 68.0).yaw(135.0);
     plants::pot(stage, front, 7.6, 13.0, grey);
     let basket = plants::hanging_pot(stage, Place::at(50.0, CEILING, -8.0), 40.0);
-    let n = [12, 1, 14, 8, 6, 6, 6];
+    let n = [7, 1, 8, 8, 9, 10, 10];
     let mut left = shares(stage.missing_to(target), n.iter().sum());
     let [kentia, grass, bamboo, bouquet, near, far, door] = n.map(|n| left.by_ref().take(n).sum());
     let short = plants::Fronds { length: 56.0, ..plants::KENTIA };
@@ -48,8 +48,8 @@ fn dining_group(stage: &mut Stage, table: Place) {
         ceramics::plate(stage, top.shift(x, 0.02, side * 9.5), white, 4.6);
         objects::wine_glass(stage, top.shift(x + 6.4, 0.02, side * 5.6), 7.6);
     }
-    lamps::candle(stage, top.shift(-8.0, 0.0, 0.0), 11.0, 90.0);
-    lamps::candle(stage, top.shift(8.0, 0.0, 0.0), 9.0, 90.0);
+    lamps::candle(stage, top.shift(-8.0, 0.0, 0.0), 11.0, 45.0);
+    lamps::candle(stage, top.shift(8.0, 0.0, 0.0), 9.0, 45.0);
     let jade = stage.paint("jade-glaze", 0x5E8A76, Finish::Gloss);
     ceramics::vase(stage, top, jade, VaseShape::Bottle, 9.5);
     plants::roses(stage, top.shift(0.0, 9.5, 0.0), 9, 8.5, 0xC24A4A);

@@ -1,5 +1,6 @@
 //! Stage 1: a seating group on a rug, a bookshelf, pictures, a mirror, lamps and the first plants.
 
+use super::garden;
 use super::shell::{CEILING, FLOOR, HALF_DEPTH, HALF_WIDTH, WINDOW_Y, WINDOW_Z};
 use crate::builtin::build::{Finish, Part, Place, Stage, bitmap, bitmap::hex, shares};
 use crate::builtin::furniture::ceramics::VaseShape;
@@ -13,8 +14,10 @@ pub fn add(stage: &mut Stage, target: usize) {
     bookshelf(stage);
     walls_and_window(stage);
     daylight(stage);
-    lamps::ceiling_lamp(stage, Place::at(-8.0, CEILING, -20.0), 11.0, 140.0);
-    lamps::floor_lamp(stage, Place::at(36.0, FLOOR, -77.0), 110.0);
+    for [x, z] in [[5.0, -20.0], [14.0, 44.0]] {
+        lamps::globe_lamp(stage, Place::at(x, CEILING, z), 18.0, 6.5, 60.0);
+    }
+    lamps::floor_lamp(stage, Place::at(36.0, FLOOR, -77.0), [5.0, 0.45]);
 
     let terracotta = stage.paint("terracotta", 0xB0653F, Finish::Satin(0.3));
     let cream = stage.paint("cream-glaze", 0xE3D9C2, Finish::Gloss);
@@ -26,13 +29,14 @@ pub fn add(stage: &mut Stage, target: usize) {
     plants::pot(stage, window, 5.8, 12.0, terracotta);
     let sill = Place::at(-HALF_WIDTH + 2.6, WINDOW_Y[0] - 0.6, -24.0);
     plants::pot(stage, sill, 2.4, 4.4, terracotta);
-    let n = [1, 7, 8, 1];
+    let n = [1, 6, 7, 1, 2];
     let mut left = shares(stage.missing_to(target), n.iter().sum());
-    let [grass, palm, bamboo, tuft] = n.map(|n| left.by_ref().take(n).sum());
+    let [grass, palm, bamboo, tuft, shrubs] = n.map(|n| left.by_ref().take(n).sum());
     plants::grass(stage, corner.shift(0.0, 11.9, 0.0), [58.0, 110.0], grass, 1);
     plants::fronds(stage, right.shift(0.0, 11.1, 0.0), plants::KENTIA, palm, 2);
     plants::bamboo(stage, window.shift(0.0, 10.2, 0.0), [52.0, 84.0, 200.0], bamboo, 3);
     plants::tuft(stage, sill.shift(0.0, 3.7, 0.0), 11.0, 90, tuft, 1);
+    garden::shrubs(stage, shrubs);
 }
 
 /// Sofa, armchair, window seat, rug.
@@ -141,7 +145,7 @@ fn walls_and_window(stage: &mut Stage) {
     walls::curtains(stage, rod, WINDOW_Z[1] - WINDOW_Z[0], WINDOW_Y[1] - 21.0, drape);
 }
 
-/// A bright sky outside the window, as a panel that faces the room.
+/// The evening sky outside the window, as a panel that faces the room.
 fn daylight(stage: &mut Stage) {
     let black = stage.paint("bulb", 0x000000, Finish::Matte);
     let x = -HALF_WIDTH - 30.0;
@@ -149,5 +153,5 @@ fn daylight(stage: &mut Stage) {
     let mut sky = Part::default();
     let corners = [[z[1], y[0]], [z[0], y[0]], [z[0], y[1]], [z[1], y[1]]].map(|[z, y]| Vec3::new(x, y, z));
     sky.quad(corners, [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
-    stage.lamp("sky", black, sky, [4.0, 4.5, 5.2]);
+    stage.lamp("sky", black, sky, [0.4, 0.45, 0.52]);
 }

@@ -27,7 +27,7 @@ pub fn add(stage: &mut Stage, target: usize) {
     plants::pot(stage, front, 6.0, 12.0, terracotta);
     let low = Place::at(-70.0, FLOOR, 44.0);
     plants::pot(stage, low, 6.6, 10.6, terracotta);
-    let n = [11, 11, 4, 8, 8, 14, 1];
+    let n = [11, 11, 4, 10, 10, 10, 1];
     let mut left = shares(stage.missing_to(target), n.iter().sum());
     let [ivy_a, ivy_b, ivy_c, lawn, hedge, bamboo, grass] = n.map(|n| left.by_ref().take(n).sum());
     plants::ivy(stage, baskets[0], 5.2, 26.0, 16, ivy_a, 6);
@@ -47,7 +47,7 @@ fn piano(stage: &mut Stage) {
     let cloth = stage
         .printed("rust-leather", [6.0, 6.0], Finish::Satin(0.3), || bitmap::weave(63, hex(0xB4623E), hex(0xA2553A)));
     seats::stool(stage, piano.shift(0.0, 0.0, 26.0), walnut, cloth, 8.0, 19.0);
-    lamps::table_lamp(stage, piano.shift(-20.0, 48.0, -5.0), 0x7A4B32, 70.0);
+    lamps::table_lamp(stage, piano.shift(-20.0, 48.0, -5.0), 0x7A4B32, [12.0, 0.45]);
     let jade = stage.paint("jade-glaze", 0x5E8A76, Finish::Gloss);
     ceramics::vase(stage, piano.shift(19.0, 48.0, -5.0), jade, VaseShape::Amphora, 11.0);
     plants::roses(stage, piano.shift(19.0, 59.0, -5.0), 7, 8.0, 0xE3C46A);

@@ -10,7 +10,7 @@ pub fn add(stage: &mut Stage, target: usize) {
     chess_corner(stage);
     let piano_top = Place::at(HALF_WIDTH - 12.6, FLOOR + 48.05, 14.0).yaw(-90.0);
     objects::tray(stage, piano_top.shift(-6.0, 0.0, -5.4), 5.0);
-    lamps::candle(stage, piano_top.shift(12.5, 0.0, -5.0), 9.0, 90.0);
+    lamps::candle(stage, piano_top.shift(12.5, 0.0, -5.0), 9.0, 45.0);
     let mut books = shelves::Books::default();
     books.row(Place::at(46.0, FLOOR + 78.6, -HALF_DEPTH + 10.5), 13.0, 11.0, 41);
     books.finish(stage);

@@ -1,6 +1,6 @@
 //! Cloth: weave, stripes and a rug.
 
-use super::{draw, fraction, mix, noise::Noise, step_between};
+use super::{draw, draw_rows, floor, fraction, mix, noise::Noise, step_between};
 use crate::Bitmap;
 use photinus_geometry::Vec3;
 use std::sync::Arc;
@@ -11,9 +11,9 @@ pub fn weave(number: u32, warp: Vec3, weft: Vec3) -> Arc<Bitmap> {
     let threads = 32.0;
     draw(256, 256, |u, v| {
         let (x, y) = (u * threads, v * threads);
-        let over = (x.floor() + y.floor()).rem_euclid(2.0) == 0.0;
+        let over = (floor(x) as i32 + floor(y) as i32) % 2 == 0;
         let (thread, across, id) =
-            if over { (warp, fraction(x), x.floor()) } else { (weft, fraction(y), y.floor() + 7.0) };
+            if over { (warp, fraction(x), floor(x)) } else { (weft, fraction(y), floor(y) + 7.0) };
         let round = 1.0 - (2.0 * across - 1.0) * (2.0 * across - 1.0);
         thread * (0.72 + 0.28 * round) * (0.9 + 0.2 * noise.cell(id as i64, over as i64))
     })
@@ -22,50 +22,63 @@ pub fn weave(number: u32, warp: Vec3, weft: Vec3) -> Arc<Bitmap> {
 /// Vertical stripes: a wide and a narrow one on a ground, `repeats` times, tiling.
 pub fn stripes(number: u32, repeats: u32, ground: Vec3, wide: Vec3, narrow: Vec3) -> Arc<Bitmap> {
     let noise = Noise::new(number);
-    draw(512, 128, |u, v| {
-        let t = fraction(u * repeats as f32);
-        let soft = |low: f32, high: f32| {
-            step_between(low - 0.01, low + 0.01, t) * (1.0 - step_between(high - 0.01, high + 0.01, t))
-        };
-        let color = mix(mix(ground, wide, soft(0.1, 0.45)), narrow, soft(0.68, 0.76));
-        color * (0.95 + 0.1 * noise.clouds(u, v, [64, 64], 1))
+    draw_rows(512, 128, |v| {
+        let wool = noise.clouds_at(v, [64, 64], 1);
+        move |u| {
+            let t = fraction(u * repeats as f32);
+            let soft = |low: f32, high: f32| {
+                step_between(low - 0.01, low + 0.01, t) * (1.0 - step_between(high - 0.01, high + 0.01, t))
+            };
+            let color = mix(mix(ground, wide, soft(0.1, 0.45)), narrow, soft(0.68, 0.76));
+            color * (0.95 + 0.1 * wool.at(u))
+        }
     })
 }
 
 /// A rug with a border, corner pieces and a medallion, the same in all four quarters.
 pub fn rug(number: u32, field: Vec3, border: Vec3, accent: Vec3, light: Vec3) -> Arc<Bitmap> {
     let noise = Noise::new(number);
-    draw(768, 512, |u, v| {
-        // One quarter is drawn; units: the half height is 1, the half width 1.5.
-        let (x, y) = (1.5 * (2.0 * u - 1.0).abs(), (2.0 * v - 1.0).abs());
-        let rim = (1.5 - x).min(1.0 - y);
-        let band = |low: f32, high: f32, d: f32| {
-            step_between(low - 0.008, low + 0.008, d) * (1.0 - step_between(high - 0.008, high + 0.008, d))
-        };
-        let lozenge = |cx: f32, cy: f32, w: f32, h: f32| (x - cx).abs() / w + (y - cy).abs() / h;
-        let mut c = field;
-        // A field of small flowers on a diagonal grid.
-        let (gx, gy) = (fraction((x + y) * 4.0) - 0.5, fraction((x - y) * 4.0) - 0.5);
-        c = mix(c, accent, 0.7 * (1.0 - step_between(0.10, 0.16, (gx * gx + gy * gy).sqrt())));
-        for (size, color) in
-            [(1.0, border), (0.92, light), (0.86, accent), (0.62, border), (0.56, light), (0.3, accent), (0.16, light)]
-        {
-            let inside = 1.0 - step_between(size - 0.02, size + 0.02, lozenge(0.0, 0.0, 0.85, 0.7));
-            c = mix(c, color, inside);
+    draw_rows(768, 512, |v| {
+        let wool = noise.clouds_at(v, [2, 16], 2);
+        let noise = &noise;
+        move |u| {
+            // One quarter is drawn; units: the half height is 1, the half width 1.5.
+            let (x, y) = (1.5 * (2.0 * u - 1.0).abs(), (2.0 * v - 1.0).abs());
+            let rim = (1.5 - x).min(1.0 - y);
+            let band = |low: f32, high: f32, d: f32| {
+                step_between(low - 0.008, low + 0.008, d) * (1.0 - step_between(high - 0.008, high + 0.008, d))
+            };
+            let lozenge = |cx: f32, cy: f32, w: f32, h: f32| (x - cx).abs() / w + (y - cy).abs() / h;
+            let mut c = field;
+            // A field of small flowers on a diagonal grid.
+            let (gx, gy) = (fraction((x + y) * 4.0) - 0.5, fraction((x - y) * 4.0) - 0.5);
+            c = mix(c, accent, 0.7 * (1.0 - step_between(0.10, 0.16, (gx * gx + gy * gy).sqrt())));
+            for (size, color) in [
+                (1.0, border),
+                (0.92, light),
+                (0.86, accent),
+                (0.62, border),
+                (0.56, light),
+                (0.3, accent),
+                (0.16, light),
+            ] {
+                let inside = 1.0 - step_between(size - 0.02, size + 0.02, lozenge(0.0, 0.0, 0.85, 0.7));
+                c = mix(c, color, inside);
+            }
+            for (size, color) in [(0.62, border), (0.54, light), (0.48, accent)] {
+                c = mix(c, color, 1.0 - step_between(size - 0.02, size + 0.02, lozenge(1.5, 1.0, 1.0, 1.0)));
+            }
+            if rim < 0.3 {
+                c = border;
+                let along = if 1.5 - x < 1.0 - y { y } else { x };
+                let (t, s) = (fraction(along * 5.0 + 0.5) - 0.5, (rim - 0.17) / 0.2);
+                c = mix(c, light, 1.0 - step_between(0.36, 0.42, t.abs() + s.abs()));
+                c = mix(c, accent, 1.0 - step_between(0.2, 0.26, t.abs() + s.abs()));
+                c = mix(c, light, band(0.285, 0.3, rim) + band(0.035, 0.05, rim));
+            }
+            // Knots, and bands of wool dyed on different days.
+            let knot = 0.9 + 0.16 * noise.cell((u * 384.0) as i64, (v * 256.0) as i64);
+            c * knot * (0.94 + 0.12 * wool.at(u))
         }
-        for (size, color) in [(0.62, border), (0.54, light), (0.48, accent)] {
-            c = mix(c, color, 1.0 - step_between(size - 0.02, size + 0.02, lozenge(1.5, 1.0, 1.0, 1.0)));
-        }
-        if rim < 0.3 {
-            c = border;
-            let along = if 1.5 - x < 1.0 - y { y } else { x };
-            let (t, s) = (fraction(along * 5.0 + 0.5) - 0.5, (rim - 0.17) / 0.2);
-            c = mix(c, light, 1.0 - step_between(0.36, 0.42, t.abs() + s.abs()));
-            c = mix(c, accent, 1.0 - step_between(0.2, 0.26, t.abs() + s.abs()));
-            c = mix(c, light, band(0.285, 0.3, rim) + band(0.035, 0.05, rim));
-        }
-        // Knots, and bands of wool dyed on different days.
-        let knot = 0.9 + 0.16 * noise.cell((u * 384.0) as i64, (v * 256.0) as i64);
-        c * knot * (0.94 + 0.12 * noise.clouds(u, v, [2, 16], 2))
     })
 }

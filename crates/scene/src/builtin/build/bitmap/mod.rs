@@ -24,11 +24,19 @@ use std::sync::Arc;
 
 /// Samples a picture at the middles of its pixels.
 fn draw(width: u32, height: u32, color: impl Fn(f32, f32) -> Vec3 + Sync) -> Arc<Bitmap> {
+    draw_rows(width, height, |v| {
+        let color = &color;
+        move |u| color(u, v)
+    })
+}
+
+/// Samples a picture at the middles of its pixels; `row` prepares what a height's colours share.
+fn draw_rows<C: Fn(f32) -> Vec3>(width: u32, height: u32, row: impl Fn(f32) -> C + Sync) -> Arc<Bitmap> {
     let mut data = vec![[0; 4]; (width * height) as usize];
-    data.par_chunks_exact_mut(width as usize).enumerate().for_each(|(row, pixels)| {
-        let v = 1.0 - (row as f32 + 0.5) / height as f32;
+    data.par_chunks_exact_mut(width as usize).enumerate().for_each(|(line, pixels)| {
+        let color = row(1.0 - (line as f32 + 0.5) / height as f32);
         for (column, pixel) in pixels.iter_mut().enumerate() {
-            let c = color((column as f32 + 0.5) / width as f32, v);
+            let c = color((column as f32 + 0.5) / width as f32);
             let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
             *pixel = [byte(c.x), byte(c.y), byte(c.z), 255];
         }
@@ -49,11 +57,25 @@ fn mix(a: Vec3, b: Vec3, t: f32) -> Vec3 {
 
 /// 0 below `low`, 1 above `high`, smooth between.
 fn step_between(low: f32, high: f32, x: f32) -> f32 {
+    // Most points lie outside: no division for them.
+    if x <= low {
+        return 0.0;
+    }
+    if x >= high {
+        return 1.0;
+    }
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
+/// The whole number at or below `x`, which is far from the ends of `i32`. By conversion: the library's function is a
+/// slow call on machines without the instruction.
+fn floor(x: f32) -> f32 {
+    let cut = x as i32;
+    (cut - i32::from(x < cut as f32)) as f32
+}
+
 /// The part of `x` after its whole number.
 fn fraction(x: f32) -> f32 {
-    x - x.floor()
+    x - floor(x)
 }

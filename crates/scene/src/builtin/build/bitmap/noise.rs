@@ -7,14 +7,14 @@ const CELLS: usize = 64;
 
 /// A field of smooth random values in 0..1.
 pub struct Noise {
-    lattice: Vec<f32>,
+    lattice: Box<[f32; CELLS * CELLS]>,
 }
 
 impl Noise {
     /// The field of this number.
     pub fn new(number: u32) -> Self {
         let word = |i: usize| philox4x32([i as u32, number, 0, 0], [0x7153_0A11, 0xC0FF_EE05])[0];
-        Self { lattice: (0..CELLS * CELLS).map(|i| unit_f32(word(i))).collect() }
+        Self { lattice: Box::new(std::array::from_fn(|i| unit_f32(word(i)))) }
     }
 
     /// A random value for a cell.
@@ -23,33 +23,77 @@ impl Noise {
         self.lattice[wrap(y) * CELLS + wrap(x)]
     }
 
-    /// The value at (x, y) in cells, at most 64 of which repeat; `shift` picks another part of the lattice.
-    fn at(&self, x: f32, y: f32, period: [i32; 2], shift: usize) -> f32 {
-        let ((x0, x1, tx), (y0, y1, ty)) = (cell_of(x, period[0], shift), cell_of(y, period[1], shift));
-        let (low, high) = (&self.lattice[y0 * CELLS..][..CELLS], &self.lattice[y1 * CELLS..][..CELLS]);
-        let below = low[x0] * (1.0 - tx) + low[x1] * tx;
-        let above = high[x0] * (1.0 - tx) + high[x1] * tx;
-        below * (1.0 - ty) + above * ty
-    }
-
     /// Octaves of noise at (u, v) in the unit square, starting with these numbers of cells; about 0 to 1, mean 0.5.
     pub fn clouds(&self, u: f32, v: f32, cells: [i32; 2], octaves: usize) -> f32 {
-        let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
-        let mut period = cells;
-        for octave in 0..octaves {
+        self.clouds_at(v, cells, octaves).at(u)
+    }
+
+    /// The same for many points of one height: what does not depend on u is worked out once.
+    ///
+    /// # Panics
+    /// With more than [`MOST_OCTAVES`].
+    #[inline]
+    pub fn clouds_at(&self, v: f32, cells: [i32; 2], octaves: usize) -> Row<'_> {
+        assert!(octaves <= MOST_OCTAVES, "{octaves} octaves");
+        let mut row =
+            Row { lattice: &self.lattice, octaves: [Octave::default(); MOST_OCTAVES], count: octaves, total: 0.0 };
+        let (mut weight, mut period) = (1.0, cells);
+        for (i, octave) in row.octaves[..octaves].iter_mut().enumerate() {
             let limited = period.map(|p| p.min(CELLS as i32));
-            sum += weight * self.at(u * limited[0] as f32, v * limited[1] as f32, limited, 17 * octave);
-            total += weight;
+            let shift = 17 * i;
+            let (low, high, t) = cell_of(v * limited[1] as f32, limited[1], shift);
+            *octave = Octave { low: low * CELLS, high: high * CELLS, t, period: limited[0], shift, weight };
+            row.total += weight;
             weight *= 0.5;
             period = period.map(|p| p * 2);
         }
-        sum / total
+        row
+    }
+}
+
+/// Most octaves of a sum of noises.
+const MOST_OCTAVES: usize = 6;
+
+/// One octave at a height: the rows of the lattice below and above it, and the share of the way between them.
+#[derive(Clone, Copy, Default)]
+struct Octave {
+    low: usize,
+    high: usize,
+    t: f32,
+    period: i32,
+    shift: usize,
+    weight: f32,
+}
+
+/// Octaves of noise along one height of the unit square.
+pub struct Row<'a> {
+    lattice: &'a [f32; CELLS * CELLS],
+    octaves: [Octave; MOST_OCTAVES],
+    count: usize,
+    total: f32,
+}
+
+impl Row<'_> {
+    /// The value at `u`.
+    #[inline]
+    pub fn at(&self, u: f32) -> f32 {
+        let mut sum = 0.0;
+        for o in &self.octaves[..self.count] {
+            let (x0, x1, tx) = cell_of(u * o.period as f32, o.period, o.shift);
+            // The mask says to the compiler what is true already: no index leaves the lattice.
+            let value = |row: usize, x: usize| self.lattice[(row + x) & (CELLS * CELLS - 1)];
+            let below = value(o.low, x0) * (1.0 - tx) + value(o.low, x1) * tx;
+            let above = value(o.high, x0) * (1.0 - tx) + value(o.high, x1) * tx;
+            sum += o.weight * (below * (1.0 - o.t) + above * o.t);
+        }
+        sum / self.total
     }
 }
 
 /// The cell below `x`, the next one, and the smoothed share of the way between them.
+#[inline]
 fn cell_of(x: f32, period: i32, shift: usize) -> (usize, usize, f32) {
-    // The floor by conversion: the function is a slow call on machines without the instruction.
+    // As `super::floor`, of which the integer is wanted too.
     let cut = x as i32;
     let floor = cut - i32::from(x < cut as f32);
     let t = x - floor as f32;

@@ -1,6 +1,6 @@
 //! Paintings for walls, each in a manner of its own.
 
-use super::{draw, hex, mix, noise::Noise, step_between};
+use super::{draw, draw_rows, hex, mix, noise::Noise, step_between};
 use crate::Bitmap;
 use std::sync::Arc;
 
@@ -15,19 +15,23 @@ pub fn hills(number: u32) -> Arc<Bitmap> {
     };
     let crests: Vec<[f32; 6]> =
         (0..WIDTH).map(|x| std::array::from_fn(|k| crest(k, x as f32 / WIDTH as f32))).collect();
-    draw(WIDTH, 384, |u, v| {
-        let bands = v + 0.08 * noise.clouds(u, v, [3, 12], 4);
-        let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, bands));
-        let (dx, dy) = ((u - 0.64) * 1.33, v - 0.6);
-        let sun = (dx * dx + dy * dy).sqrt();
-        let mut c = mix(hex(0xFFF1C9), sky, step_between(0.055, 0.065, sun));
-        c = mix(hex(0xFFD898), c, step_between(0.0, 0.4, sun).max(0.35));
-        for (&range, &crest) in ranges.iter().zip(&crests[(u * WIDTH as f32) as usize]) {
-            if v < crest {
-                c = mix(range * 1.12, range * 0.85, step_between(0.0, 0.16, crest - v));
+    draw_rows(WIDTH, 384, |v| {
+        let (clouds, canvas) = (noise.clouds_at(v, [3, 12], 4), noise.clouds_at(v, [64, 64], 1));
+        let crests = &crests;
+        move |u| {
+            let bands = v + 0.08 * clouds.at(u);
+            let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, bands));
+            let (dx, dy) = ((u - 0.64) * 1.33, v - 0.6);
+            let sun = (dx * dx + dy * dy).sqrt();
+            let mut c = mix(hex(0xFFF1C9), sky, step_between(0.055, 0.065, sun));
+            c = mix(hex(0xFFD898), c, step_between(0.0, 0.4, sun).max(0.35));
+            for (&range, &crest) in ranges.iter().zip(&crests[(u * WIDTH as f32) as usize]) {
+                if v < crest {
+                    c = mix(range * 1.12, range * 0.85, step_between(0.0, 0.16, crest - v));
+                }
             }
+            c * (0.94 + 0.12 * canvas.at(u))
         }
-        c * (0.94 + 0.12 * noise.clouds(u, v, [64, 64], 1))
     })
 }
 
@@ -56,21 +60,31 @@ pub fn blocks(number: u32) -> Arc<Bitmap> {
 pub fn circles(number: u32) -> Arc<Bitmap> {
     let noise = Noise::new(number);
     let inks = [0xC8452F, 0x2F5D7C, 0xE3A63B, 0x4F7F64, 0x6D3F5B, 0xD97F56].map(hex);
-    draw(384, 512, |u, v| {
-        let mut c = mix(hex(0xEFE3CB), hex(0xE3CFAE), noise.clouds(u, v, [3, 3], 4));
-        for k in 0..14i64 {
-            let random = |salt: i64| noise.cell(k + 3, salt);
-            let (dx, dy) = (u - 0.1 - 0.8 * random(5), (v - 0.08 - 0.84 * random(9)) * 1.33);
-            let radius = 0.04 + 0.19 * random(13) * random(14);
-            let d = (dx * dx + dy * dy).sqrt();
-            let ink = inks[k as usize % inks.len()];
-            let disc = 1.0 - step_between(radius - 0.003, radius + 0.003, d);
-            let ring = disc * step_between(0.72 * radius - 0.003, 0.72 * radius + 0.003, d);
-            let cover = if k % 3 == 0 { ring } else { disc };
-            c = mix(c, c * 0.25 + ink * 0.75, cover);
-            let core = 1.0 - step_between(0.3 * radius - 0.003, 0.3 * radius + 0.003, d);
-            c = mix(c, inks[(k as usize + 2) % inks.len()], core);
+    let discs: [_; 14] = std::array::from_fn(|k| {
+        let random = |salt: i64| noise.cell(k as i64 + 3, salt);
+        let middle = [0.1 + 0.8 * random(5), 0.08 + 0.84 * random(9)];
+        (middle, 0.04 + 0.19 * random(13) * random(14), inks[k % inks.len()], inks[(k + 2) % inks.len()])
+    });
+    draw_rows(384, 512, |v| {
+        let (ground, canvas) = (noise.clouds_at(v, [3, 3], 4), noise.clouds_at(v, [64, 64], 1));
+        let discs = &discs;
+        move |u| {
+            let mut c = mix(hex(0xEFE3CB), hex(0xE3CFAE), ground.at(u));
+            for (k, &([x, y], radius, ink, heart)) in discs.iter().enumerate() {
+                let (dx, dy) = (u - x, (v - y) * 1.33);
+                let d_sq = dx * dx + dy * dy;
+                if d_sq > (radius + 0.004) * (radius + 0.004) {
+                    continue;
+                }
+                let d = d_sq.sqrt();
+                let disc = 1.0 - step_between(radius - 0.003, radius + 0.003, d);
+                let ring = disc * step_between(0.72 * radius - 0.003, 0.72 * radius + 0.003, d);
+                let cover = if k % 3 == 0 { ring } else { disc };
+                c = mix(c, c * 0.25 + ink * 0.75, cover);
+                let core = 1.0 - step_between(0.3 * radius - 0.003, 0.3 * radius + 0.003, d);
+                c = mix(c, heart, core);
+            }
+            c * (0.95 + 0.1 * canvas.at(u))
         }
-        c * (0.95 + 0.1 * noise.clouds(u, v, [64, 64], 1))
     })
 }
