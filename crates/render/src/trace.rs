@@ -136,7 +136,7 @@ impl<'w> Tracer<'w> {
             for (slot, &i) in self.pending.iter().enumerate() {
                 let hit = self.hits[slot];
                 hits[i] = hit;
-                if !hit.is_hit() {
+                if !hit.is_hit() || self.world.stops_light(hit.prim) {
                     continue;
                 }
                 let point = self.world.surface(&rays[i], &hit, 0.0);
@@ -178,6 +178,10 @@ impl<'w> Tracer<'w> {
             for (slot, &i) in self.pending.iter().enumerate() {
                 let hit = self.hits[slot];
                 if !hit.is_hit() {
+                    continue;
+                }
+                if self.world.stops_light(hit.prim) {
+                    visible[i] = 0.0;
                     continue;
                 }
                 let point = self.world.surface(&rays[i], &hit, 0.0);

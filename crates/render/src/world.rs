@@ -373,6 +373,11 @@ impl World {
         }
     }
 
+    /// Whether no light at all passes straight through a primitive, wherever on it; most have no need of a look at theirs.
+    pub(crate) fn stops_light(&self, prim: u32) -> bool {
+        !self.shapes[self.shape_of(prim)].passes_light
+    }
+
     /// Share of light that passes straight through the surface at `point`, 0 to 1.
     pub(crate) fn transparency(&self, point: &SurfacePoint) -> f32 {
         let record = &self.shapes[point.shape as usize];
