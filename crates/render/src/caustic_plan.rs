@@ -85,7 +85,7 @@ impl Starts {
     /// Takes note of the photons of a round; returns where they landed in sight.
     fn add(&mut self, pass: &PhotonPass, stored: &StoredPhotons, visibility: &Visibility) -> Vec<(Vec3, f32)> {
         let mut seen = Vec::new();
-        for (photon, &index) in stored.caustic.iter().zip(&stored.origins) {
+        for (photon, &index) in stored.caustic.iter().zip(&stored.caustic_origins) {
             let (start, density, _) = pass.start(index);
             let width = visibility.width(photon.position());
             let worth = photon.flux().element_sum() * density * pass.count as f32;

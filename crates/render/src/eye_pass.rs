@@ -23,6 +23,11 @@ use photinus_profile::queries::{BlockKey, RayKind, Stage};
 /// Edge of a tile in pixels.
 const TILE: u32 = 32;
 
+/// Steps of points that fill the square evenly: powers of the plastic number's inverse (Roberts 2018, the R2 sequence).
+const R2: [f32; 2] = [0.754_877_7, 0.569_840_3];
+/// Rays along a rough mirror-like lobe that the camera sees, where light may be anywhere.
+const LOOKS: u32 = 4;
+
 /// Everything an eye pass needs.
 pub(crate) struct EyePass<'a> {
     pub world: &'a World,
@@ -66,6 +71,8 @@ pub(crate) struct Path {
     last_place: Place,
     /// Shadow rays that were sent there.
     last_shadows: f32,
+    /// Rays that were sent along lobes like the last direction's, this one among them.
+    last_looks: f32,
     /// Diffuse bounces, and mirror-like ones after the last of them.
     diffuse: u32,
     mirrors: u32,
@@ -177,6 +184,7 @@ impl EyePass<'_> {
                 last_position: start.ray.origin,
                 last_place: Place::ANY,
                 last_shadows: 0.0,
+                last_looks: 1.0,
                 diffuse: 0,
                 mirrors: 0,
                 eta_sq: 1.0,
@@ -243,7 +251,7 @@ impl EyePass<'_> {
             1.0
         } else {
             let rival = self.lights.environment_pdf(path.last_place, path.ray.dir);
-            power_heuristic(path.last_pdf, path.last_shadows * rival)
+            power_heuristic(path.last_pdf * path.last_looks, path.last_shadows * rival) / path.last_looks
         };
         tile.add(path.pixel, path.part(), path.throughput * radiance * weight);
     }
@@ -267,7 +275,7 @@ impl EyePass<'_> {
                 1.0
             } else {
                 let rival = self.lights.area_pdf(self.world, path.last_position, path.last_place, point);
-                power_heuristic(path.last_pdf, path.last_shadows * rival)
+                power_heuristic(path.last_pdf * path.last_looks, path.last_shadows * rival) / path.last_looks
             };
             tile.add(path.pixel, path.part(), path.throughput * emitted * weight);
         }
@@ -303,9 +311,8 @@ impl EyePass<'_> {
         let count = if path.diffuse == 0 { (worth.ceil() as u32).max(1) } else { 1 };
         path.last_shadows = count as f32;
         for i in 0..count {
-            // Steps of the plastic number's powers fill the square evenly (Roberts 2018, the R2 sequence).
             let step = |u: f32, by: f32| (u + i as f32 * by).fract();
-            let u = [step(u[0], 0.754_877_7), step(u[1], 0.569_840_3)];
+            let u = [step(u[0], R2[0]), step(u[1], R2[1])];
             let choice = ((i as f32 + choice) / count as f32).min(0.999_999_94);
             self.light_once(path, point, bsdf, choice, u, shadows);
         }
@@ -340,7 +347,8 @@ impl EyePass<'_> {
                     (set, value)
                 };
                 let pdf = bsdf.pdf(set, light.dir);
-                pdf * survival(path.depth, path.throughput * value / pdf.max(1e-20))
+                let looks = self.looks(path, bsdf) as f32;
+                pdf * looks * survival(path.depth, path.throughput * value / pdf.max(1e-20))
             };
             let weight = power_heuristic(density, rival);
             let part = match (path.diffuse, diffuse) {
@@ -398,6 +406,7 @@ impl EyePass<'_> {
                 sampler: path.sampler.clone(),
                 last_pdf: s.pdf,
                 last_position: point.position,
+                last_looks: 1.0,
                 probe: true,
                 ..*path
             });
@@ -423,6 +432,23 @@ impl EyePass<'_> {
         let choice = path.sampler.next_1d();
         let chance = path.sampler.next_1d();
         let u = path.sampler.next_2d();
+        let looks = self.looks(&path, bsdf);
+        for i in 1..looks {
+            let u = [(u[0] + i as f32 * R2[0]).fract(), (u[1] + i as f32 * R2[1]).fract()];
+            let choice = (choice + i as f32 / looks as f32).fract();
+            let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { continue };
+            next.push(Path {
+                ray: Ray::new(point.ray_origin(s.wi), s.wi),
+                throughput: path.throughput * s.weight,
+                sampler: path.sampler.clone(),
+                last_pdf: s.pdf,
+                last_position: point.position,
+                last_looks: looks as f32,
+                probe: true,
+                ..path
+            });
+        }
+        path.last_looks = looks as f32;
         let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { return };
         let throughput = path.throughput * s.weight;
         let strength = throughput.max_element() * path.eta_sq * s.eta * s.eta;
@@ -445,6 +471,12 @@ impl EyePass<'_> {
         path.last_position = point.position;
         path.ray = Ray::new(point.ray_origin(s.wi), s.wi);
         next.push(path);
+    }
+
+    /// Rays that look along the mirror-like lobes of a surface for lights; all but one of them end there.
+    fn looks(&self, path: &Path, bsdf: &Bsdf) -> u32 {
+        let rough = bsdf.has(LobeSet::CONTINUE & LobeSet::NON_DELTA) && !bsdf.has(LobeSet::DELTA);
+        if self.maps.is_some() && self.probe && path.depth == 1 && rough { LOOKS } else { 1 }
     }
 
     pub(crate) fn first_surface(

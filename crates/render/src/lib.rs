@@ -28,6 +28,7 @@ pub mod texture;
 mod tile;
 mod trace;
 mod twin;
+mod usefulness;
 mod world;
 
 pub use camera::{CameraModel, CameraRay};

@@ -79,8 +79,9 @@ impl Together<'_> {
 pub(crate) struct StoredPhotons {
     pub global: Vec<Photon>,
     pub caustic: Vec<Photon>,
-    /// Which photon of the pass each caustic one is; kept by the pilot only.
+    /// Which photon of the pass each one is, global and caustic; kept by the pilot only.
     pub origins: Vec<u32>,
+    pub caustic_origins: Vec<u32>,
 }
 
 struct Walk {
@@ -128,6 +129,7 @@ impl PhotonPass<'_> {
                 all.global.extend_from_slice(&photons.global);
                 all.caustic.extend_from_slice(&photons.caustic);
                 all.origins.extend_from_slice(&photons.origins);
+                all.caustic_origins.extend_from_slice(&photons.caustic_origins);
                 counters += c;
             }
             if first == 0 && last < chunks {
@@ -319,10 +321,13 @@ impl PhotonPass<'_> {
         if caustic && self.keep != Keep::All {
             counters.photons.stored_caustic += 1;
             if self.kind == StreamKind::Pilot {
-                stored.origins.push(walk.index);
+                stored.caustic_origins.push(walk.index);
             }
             stored.caustic.push(photon);
         } else {
+            if self.kind == StreamKind::Pilot {
+                stored.origins.push(walk.index);
+            }
             stored.global.push(photon);
         }
     }

@@ -2,14 +2,15 @@
 //! photons fall. It steers radii and the aim of photons, and never enters an estimate.
 
 use crate::bsdf::{LobeSet, TransportMode};
-use crate::camera::CameraModel;
+use crate::camera::{CameraModel, uniform_disk};
 use crate::caustic_plan::{self, CausticPlan};
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
-use crate::light::{Lights, SkyView, VisibleRegion, cosine_hemisphere};
+use crate::light::{Anchor, Lights, SkyView, VisibleRegion, cosine_hemisphere};
 use crate::photon_pass::{Keep, PhotonPass};
 use crate::trace::Tracer;
 use crate::twin::Twin;
+use crate::usefulness;
 use crate::world::World;
 use photinus_geometry::{Frame, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
@@ -20,6 +21,8 @@ const GRID: u32 = 128;
 /// Rays to the sky from each point, and clear surfaces that one may cross.
 const SKY_RAYS: u32 = 3;
 const CLEAR_SURFACES: u32 = 6;
+/// Rays from each anchor to each light at infinity.
+const OPEN_RAYS: u32 = 4;
 /// Photons sent out by the pilot at most.
 const PHOTONS: u32 = 50_000;
 /// As many tell how many are stored.
@@ -117,7 +120,6 @@ pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4]
 /// Which directions of the sky the visible points see, straight or through clear surfaces.
 pub(crate) fn sky_view(world: &World, points: &[VisiblePoint], seed: u64) -> SkyView {
     let mut view = SkyView::new();
-    let mut tracer = Tracer::new(world, Twin::OFF);
     let (mut rays, mut samplers): (Vec<Ray>, Vec<Sampler>) = (Vec::new(), Vec::new());
     for (i, point) in points.iter().enumerate() {
         let frame = Frame::from_normal(point.normal);
@@ -128,31 +130,87 @@ pub(crate) fn sky_view(world: &World, points: &[VisiblePoint], seed: u64) -> Sky
             samplers.push(sampler);
         }
     }
+    follow_clear(world, rays, samplers, |_, dir, end| match end {
+        End::Sky => view.add(dir, true),
+        End::Lamp => view.add_lamp(),
+        End::Surface => view.add(dir, false),
+    });
+    view
+}
+
+/// For each anchor and each light at infinity, the share of rays from the anchor's disc that reach the light, straight or
+/// through clear surfaces.
+pub(crate) fn openness(world: &World, lights: &Lights, anchors: &[Anchor], seed: u64) -> Vec<Vec<f64>> {
+    let items = lights.far_items();
+    let (mut rays, mut samplers, mut owners) = (Vec::new(), Vec::new(), Vec::new());
+    for (a, anchor) in anchors.iter().enumerate() {
+        for item in (0..items).filter(|&item| lights.far_share(item) > 0.0) {
+            for i in 0..OPEN_RAYS {
+                let stream = 5 << 40 | (a as u64) << 20 | item as u64;
+                let mut sampler = Sampler::new(seed, StreamKind::Pilot, stream, i);
+                let (place, way, choice) = (sampler.next_2d(), sampler.next_2d(), sampler.next_1d());
+                let Some((dir, ..)) = lights.look_far(item, choice, way) else { continue };
+                let frame = Frame::from_normal(dir);
+                let [x, y] = uniform_disk(place);
+                let origin = anchor.center + (frame.s * x + frame.t * y) * anchor.radius;
+                rays.push(Ray::new(origin, dir));
+                samplers.push(sampler);
+                owners.push([a, item]);
+            }
+        }
+    }
+    let mut open = vec![vec![0.0; items]; anchors.len()];
+    follow_clear(world, rays, samplers, |ray, _, end| {
+        if end == End::Sky {
+            let [anchor, item] = owners[ray];
+            open[anchor][item] += 1.0 / f64::from(OPEN_RAYS);
+        }
+    });
+    open
+}
+
+/// Where a ray through clear surfaces ends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum End {
+    Sky,
+    Lamp,
+    Surface,
+}
+
+/// Follows rays straight on through clear surfaces; `found` gets the number of each that ends, its direction, and where.
+fn follow_clear(
+    world: &World,
+    mut rays: Vec<Ray>,
+    mut samplers: Vec<Sampler>,
+    mut found: impl FnMut(usize, Vec3, End),
+) {
+    let mut tracer = Tracer::new(world, Twin::OFF);
+    let mut numbers: Vec<usize> = (0..rays.len()).collect();
     let mut hits = Vec::new();
     for _ in 0..CLEAR_SURFACES {
         tracer.closest(&rays, &mut hits, &mut Counters::default(), |i| samplers[i].next_1d());
-        let (mut next, mut next_samplers) = (Vec::new(), Vec::new());
-        for ((ray, hit), sampler) in rays.iter().zip(&hits).zip(&samplers) {
+        let (mut next, mut next_samplers, mut next_numbers) = (Vec::new(), Vec::new(), Vec::new());
+        for (slot, (ray, hit)) in rays.iter().zip(&hits).enumerate() {
             if !hit.is_hit() {
-                view.add(ray.dir, true);
+                found(numbers[slot], ray.dir, End::Sky);
                 continue;
             }
             let point = world.surface(ray, hit, 0.0);
             if world.emitted(&point, -ray.dir) != Vec3::ZERO {
-                view.add_lamp();
+                found(numbers[slot], ray.dir, End::Lamp);
                 continue;
             }
             let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, &point, -ray.dir);
             if bsdf.has(LobeSet::DELTA_TRANSMISSION) {
                 next.push(Ray::new(point.ray_origin(ray.dir), ray.dir));
-                next_samplers.push(sampler.clone());
+                next_samplers.push(samplers[slot].clone());
+                next_numbers.push(numbers[slot]);
             } else {
-                view.add(ray.dir, false);
+                found(numbers[slot], ray.dir, End::Surface);
             }
         }
-        (rays, samplers) = (next, next_samplers);
+        (rays, samplers, numbers) = (next, next_samplers, next_numbers);
     }
-    view
 }
 
 /// The sphere around the nearer part of what is visible, which fills most of the picture: a plane that runs to the
@@ -180,6 +238,26 @@ pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleR
     if radius > 0.7 * whole.radius || !(radius > 0.0) { whole } else { VisibleRegion { center, radius } }
 }
 
+/// The pilot's own photons: those of `pass`, fewer and not aimed.
+fn pilot_pass(pass: PhotonPass, photons: u32) -> PhotonPass {
+    let count = photons.min(PHOTONS);
+    PhotonPass { kind: StreamKind::Pilot, pass: 0, count, guide: None, together: None, profile_every: 0, ..pass }
+}
+
+/// Ways of photons from infinity that light what is seen, of a pass of `photons`; each with what it is worth.
+pub(crate) fn useful_rays(
+    world: &World,
+    lights: &Lights,
+    points: &[VisiblePoint],
+    pass: PhotonPass,
+    photons: u32,
+    observer: &dyn Observer,
+) -> Result<Vec<(Ray, f64)>, Cancelled> {
+    let pilot = PhotonPass { pass: pass.pass, ..pilot_pass(pass, photons) };
+    let (stored, _) = pilot.run(world, lights, observer)?;
+    Ok(usefulness::useful_rays(world, lights, points, &pilot, stored))
+}
+
 /// What the photons of a pilot pass say about radii and memory, for `photons` photons a pass. Where the user gives the
 /// `radius` and no photons are aimed, only memory is asked about.
 pub(crate) fn photon_outlook(
@@ -194,8 +272,7 @@ pub(crate) fn photon_outlook(
     let radius = radius.map(|radius| Radii { global: radius, caustic: radius });
     let only_memory = radius.filter(|_| pass.keep == Keep::All);
     let count = photons.min(if only_memory.is_some() { MEMORY_PHOTONS } else { PHOTONS });
-    let pilot =
-        PhotonPass { kind: StreamKind::Pilot, pass: 0, count, guide: None, together: None, profile_every: 0, ..pass };
+    let pilot = PhotonPass { count, ..pilot_pass(pass, photons) };
     let (mut stored, counters) = pilot.run(world, lights, observer)?;
     let per_pass = |stored: u64| (stored as f64 * f64::from(photons) / f64::from(count.max(1))) as u64;
     let counted = counters.photons;

@@ -8,7 +8,7 @@ use crate::direct::DEFAULT_LEVELS;
 use crate::eye_pass::EyePass;
 use crate::film::{Aov, Film, FilmLayout};
 use crate::film_filter::FilterSampler;
-use crate::light::{LightGuide, Lights, SkyView, shadow_rays};
+use crate::light::{LightGuide, Lights, SkyView, anchors, shadow_rays};
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
@@ -22,6 +22,9 @@ use photinus_scene::Light;
 
 /// Shrinking of the radius, Knaus and Zwicker 2011, section 5: the area falls by (i + ALPHA) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
+
+/// Looks at where photons from infinity are useful; those that are aimed already show it better.
+const AIM_ROUNDS: u32 = 2;
 
 /// Why a render cannot start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -119,6 +122,15 @@ impl<'w> Renderer<'w> {
             settings,
         };
         renderer.film = Film::new(pixels * renderer.layout.channels());
+        if matches!(renderer.settings.mode, Mode::Progressive | Mode::Gather) && renderer.lights.any_far() {
+            for round in 0..AIM_ROUNDS {
+                let pass = PhotonPass { pass: round, ..renderer.photon_pass(0) };
+                let useful = pilot::useful_rays(world, &renderer.lights, &points, pass, photons, observer)?;
+                let anchors = anchors(&useful, renderer.lights.region());
+                let open = pilot::openness(world, &renderer.lights, &anchors, renderer.settings.seed);
+                renderer.lights = renderer.lights.anchored(&anchors, &open);
+            }
+        }
         if renderer.settings.mode != Mode::Path {
             let pass = renderer.photon_pass(0);
             PhotonOutlook { radii: renderer.radii, stored: renderer.stored, caustics: renderer.caustics } =

@@ -71,6 +71,30 @@ impl LightChoice {
         let rest = ((u - before) / share) as f32;
         (share > 0.0).then_some((index, share as f32, rest.clamp(0.0, 0.999_999_94)))
     }
+
+    /// Probability of a light; 0 where there is no such one.
+    pub fn share(&self, index: usize) -> f32 {
+        (self.cumulative.get(index).copied().unwrap_or(0.0) - self.before(index)) as f32
+    }
+
+    /// Probability that a light is `first` or behind it.
+    pub fn share_from(&self, first: usize) -> f32 {
+        (1.0 - self.before(first)) as f32
+    }
+
+    /// What is left of `u`, which chose a light from `first` on, as a fresh number in 0..1.
+    pub fn within(&self, first: usize, u: f32) -> f32 {
+        let before = self.before(first);
+        (((f64::from(u) - before) / (1.0 - before)) as f32).clamp(0.0, 0.999_999_94)
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.cumulative.len() * size_of::<f64>()
+    }
+
+    fn before(&self, index: usize) -> f64 {
+        if index == 0 { 0.0 } else { self.cumulative.get(index - 1).copied().unwrap_or(1.0) }
+    }
 }
 
 #[cfg(test)]

@@ -1,16 +1,17 @@
 //! All lights of a scene behind one choice.
 
 use super::alias::AliasTable;
+use super::anchors::Anchor;
 use super::clusters::{Clusters, Member};
 use super::emission::{EmissionPoint, LightChoice};
 use super::emitter::{self, Emitter, mean};
 use super::environment::Environment;
+use super::far::{Disc, Discs};
 use super::guide::{LightGuide, Place};
 use super::sky_pool::SkyPool;
 use super::sky_view::SkyView;
-use crate::camera::uniform_disk;
 use crate::{SurfacePoint, world::World};
-use photinus_geometry::{Frame, Ray, Vec3};
+use photinus_geometry::{Ray, Vec3};
 use photinus_scene::Light;
 use std::f32::consts::PI;
 
@@ -86,9 +87,8 @@ pub struct Lights {
     pool: Option<SkyPool>,
     /// For each shape, the emitter of its first primitive; `u32::MAX`: it emits nothing.
     first_emitter: Vec<u32>,
-    region: VisibleRegion,
-    /// Radii of the discs that photons from infinity start on, with the share of each.
-    rings: Vec<(f32, f32)>,
+    /// Where photons from infinity start.
+    discs: Discs,
 }
 
 impl Lights {
@@ -168,9 +168,37 @@ impl Lights {
             guide: None,
             pool: None,
             first_emitter,
-            region,
-            rings: rings(world, region),
+            discs: Discs::new(world, region),
         }
+    }
+
+    /// Starts most photons from infinity on small discs around `anchors` from now on. `open` has, for each anchor and each
+    /// light at infinity, the share of its light that arrives there.
+    pub(crate) fn anchored(mut self, anchors: &[Anchor], open: &[Vec<f64>]) -> Self {
+        let powers: Vec<f64> = (0..self.far_items()).map(|i| f64::from(self.far_share(i))).collect();
+        self.discs.add_small(anchors, open, &powers);
+        self
+    }
+
+    /// Lights at infinity: distant ones, then bins of the sky.
+    pub(crate) fn far_items(&self) -> usize {
+        self.distant.len() + self.sky.as_ref().map_or(0, |_| SkyView::BINS)
+    }
+
+    /// Share of the photons that the light at infinity `item` sends, as it shines.
+    pub(crate) fn far_share(&self, item: usize) -> f32 {
+        self.emission.share(self.emitters.len() + item)
+    }
+
+    /// A direction to look in for the light at infinity `item`, the light that comes from there, and the density of the
+    /// direction, 1 for distant lights; none where it sends nothing.
+    pub(crate) fn look_far(&self, item: usize, choice: f32, u: [f32; 2]) -> Option<(Vec3, Vec3, f32)> {
+        if let Some(Distant { direction, irradiance }) = self.distant.get(item) {
+            return Some((-*direction, *irradiance, 1.0));
+        }
+        let sky = self.sky.as_ref()?;
+        let (dir, pdf) = sky.sample(item - self.distant.len(), choice, u);
+        Some((dir, sky.radiance(dir), pdf))
     }
 
     /// Chooses lights by place from now on.
@@ -217,12 +245,22 @@ impl Lights {
 
     /// Where photons from infinity are aimed.
     pub fn region(&self) -> VisibleRegion {
-        self.region
+        self.discs.region()
     }
 
     /// Whether photons from infinity are aimed at a region smaller than the scene.
     pub(crate) fn aims(&self) -> bool {
-        self.rings.len() > 1 && (self.sky.is_some() || !self.distant.is_empty())
+        self.discs.nested() && self.any_far()
+    }
+
+    /// Whether a photon that starts at `point` comes from infinity.
+    pub(crate) fn is_far(&self, point: &EmissionPoint) -> bool {
+        self.emission.at(point.light()).is_some_and(|(index, ..)| index >= self.emitters.len())
+    }
+
+    /// Whether any light comes from infinity.
+    pub(crate) fn any_far(&self) -> bool {
+        self.sky.is_some() || !self.distant.is_empty()
     }
 
     /// Whether light comes from all around.
@@ -235,6 +273,7 @@ impl Lights {
         self.emitters.len() * (size_of::<Emitter>() + 12)
             + self.parts.len() * 32
             + self.sky.as_ref().map_or(0, |sky| sky.bytes() + SkyPool::bytes())
+            + self.discs.bytes()
             + self.guide.as_ref().map_or(0, LightGuide::bytes)
     }
 
@@ -347,62 +386,22 @@ impl Lights {
     pub(crate) fn emit(&self, world: &World, point: &EmissionPoint) -> Option<PhotonStart> {
         let (place, way) = (point.place(), point.direction());
         let (index, probability, rest) = self.emission.at(point.light())?;
-        let (emitters, distant) = (self.emitters.len(), self.distant.len());
-        let (ray, flux) = if index < emitters {
-            self.emitters[index].start(world, place, way)
-        } else if index < emitters + distant {
-            let Distant { direction, irradiance } = self.distant[index - emitters];
-            let (ray, density) = self.start_outside(direction, place, point.disc());
-            (ray, irradiance / density)
-        } else {
-            let sky = self.sky.as_ref()?;
-            let (dir, pdf) = sky.sample(index - emitters - distant, rest, way);
-            let (ray, density) = self.start_outside(-dir, place, point.disc());
-            (ray, sky.radiance(dir) / (pdf * density))
+        let near = self.emitters.len();
+        if index < near {
+            let (ray, flux) = self.emitters[index].start(world, place, way);
+            let flux = flux / probability;
+            return (flux.is_finite() && flux.max_element() > 0.0).then_some(PhotonStart { ray, flux });
+        }
+        let disc = self.discs.choose(point.disc());
+        let far = self.emission.share_from(near);
+        let (item, rest) = match disc {
+            Disc::Wide(_) => (index - near, rest),
+            Disc::Small(small) => self.discs.item(small, self.emission.within(near, point.light()))?,
         };
-        let flux = flux / probability;
+        let (dir, light, pdf) = self.look_far(item, rest, way)?;
+        let by_power = self.far_share(item);
+        let (ray, density) = self.discs.start(disc, -dir, place, item, by_power, far);
+        let flux = light / (pdf * density) / by_power;
         (flux.is_finite() && flux.max_element() > 0.0).then_some(PhotonStart { ray, flux })
     }
-
-    /// A ray that travels along `dir` from beyond the scene, and the density of its place per area across it.
-    ///
-    /// Its place is drawn from nested discs around the visible region, each twice as wide as the one before: light
-    /// that falls far outside still counts, at a density that falls like the square of the distance.
-    fn start_outside(&self, dir: Vec3, u: [f32; 2], choice: f32) -> (Ray, f32) {
-        let mut rest = choice;
-        let mut radius = self.rings[self.rings.len() - 1].0;
-        for &(r, share) in &self.rings {
-            if rest < share {
-                radius = r;
-                break;
-            }
-            rest -= share;
-        }
-        let [x, y] = uniform_disk(u);
-        let frame = Frame::from_normal(dir);
-        let off = radius * (x * x + y * y).sqrt();
-        let density = self.rings.iter().filter(|(r, _)| *r >= off).map(|(r, share)| share / (PI * r * r)).sum::<f32>();
-        let reach = self.rings[self.rings.len() - 1].0;
-        let origin = self.region.center + (frame.s * x + frame.t * y) * radius - dir * (2.0 * reach);
-        (Ray::new(origin, dir), density)
-    }
-}
-
-/// Half of the photons go to the visible region, the others to discs that double in radius until the scene ends.
-fn rings(world: &World, region: VisibleRegion) -> Vec<(f32, f32)> {
-    let bounds = world.bounds;
-    let reach = if bounds.is_empty() {
-        region.radius
-    } else {
-        (region.center - bounds.center()).length() + 0.5 * bounds.diagonal()
-    };
-    let mut radii = vec![region.radius];
-    while radii[radii.len() - 1] < reach && radii.len() < 64 {
-        radii.push((radii[radii.len() - 1] * 2.0).min(reach));
-    }
-    if radii.len() == 1 {
-        return vec![(radii[0], 1.0)];
-    }
-    let others = 0.5 / (radii.len() - 1) as f32;
-    radii.into_iter().enumerate().map(|(i, r)| (r, if i == 0 { 0.5 } else { others })).collect()
 }

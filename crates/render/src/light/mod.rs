@@ -1,6 +1,7 @@
 //! Lights: what they send to a point, what they send out as photons, and how likely each choice is.
 
 mod alias;
+mod anchors;
 mod area;
 mod clusters;
 mod effort;
@@ -8,12 +9,14 @@ mod emission;
 mod emission_guide;
 mod emitter;
 mod environment;
+mod far;
 mod guide;
 mod lights;
 mod sky_pool;
 mod sky_view;
 mod sphere;
 
+pub(crate) use anchors::{Anchor, anchors};
 pub(crate) use area::cosine_hemisphere;
 pub(crate) use area::uniform_cone;
 pub(crate) use effort::shadow_rays;
