@@ -10,8 +10,8 @@ use crate::maps::Estimate;
 use crate::tile::Tile;
 use photinus_photons::GatherQuery;
 
-/// Shifts of the other places in the unit square of the pixel's filter.
-const SHIFTS: [[f32; 2]; 3] = [[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
+/// Shifts of the other places in the unit square of the pixel's filter; companions of a point stand in this order.
+pub(crate) const SHIFTS: [[f32; 2]; 3] = [[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
 /// Maps with radii of more pixels than this have no rims that are sharper than their estimates.
 const SHARP: f32 = 8.0;
 /// Places farther from the point than this share of its distance from the camera are no part of the same surface.
@@ -38,7 +38,7 @@ impl EyePass<'_> {
         let first = companions.len();
         for shift in SHIFTS {
             let u = [(u[0] + shift[0]).fract(), (u[1] + shift[1]).fract()];
-            let ([dx, dy], weight) = self.filter.sample(u);
+            let ([dx, dy], weight) = self.film_offset(u);
             let ray = self.camera.ray([x as f32 + 0.5 + dx, y as f32 + 0.5 + dy], &mut sampler.clone()).ray;
             let normal = estimate.query.normal;
             let t = normal.dot(estimate.query.position - ray.origin) / normal.dot(ray.dir);

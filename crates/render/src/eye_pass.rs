@@ -4,10 +4,11 @@
 use crate::SurfacePoint;
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::camera::CameraModel;
+use crate::companions::SHIFTS;
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::film::{Aov, FilmLayout};
-use crate::film_filter::FilterSampler;
+use crate::film_filter::{FilterSampler, SharedFilter};
 use crate::light::{Lights, Place};
 use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps};
 use crate::recording::NOT_YET;
@@ -34,6 +35,8 @@ pub(crate) struct EyePass<'a> {
     pub lights: &'a Lights,
     pub camera: &'a CameraModel,
     pub filter: &'a FilterSampler,
+    /// The same filter where pixels share samples.
+    pub shared: Option<&'a SharedFilter>,
     pub layout: &'a FilmLayout,
     /// Window of the film: x, y, width, height.
     pub crop: [u32; 4],
@@ -128,6 +131,7 @@ impl EyePass<'_> {
                 counters.rays.camera += paths.len() as u64;
                 let estimates = self.follow(paths, tile, &mut tracer, counters);
                 self.gather(&estimates, &mut twin, tile, &mut tracer, counters);
+                tile.end_sample();
             }
             tracer.finish();
             self.spp
@@ -136,7 +140,7 @@ impl EyePass<'_> {
 
     /// The tiles of the pass.
     pub(crate) fn tiles(&self, edge: u32) -> Tiles<'_> {
-        Tiles { layout: self.layout, window: self.crop, samples: self.spp, edge }
+        Tiles { layout: self.layout, window: self.crop, samples: self.spp, edge, shared: self.shared }
     }
 
     /// The tracer of a tile.
@@ -160,6 +164,11 @@ impl EyePass<'_> {
         Sampler::new(self.seed, StreamKind::Eye, u64::from(y) << 32 | u64::from(x), self.pass * self.spp + sample)
     }
 
+    /// Where a sample lies, from its pixel's middle, and its weight.
+    pub(crate) fn film_offset(&self, u: [f32; 2]) -> ([f32; 2], f32) {
+        if self.shared.is_some() { (u.map(|u| u - 0.5), 1.0) } else { self.filter.sample(u) }
+    }
+
     /// The paths of a sample of a tile.
     pub(crate) fn camera_paths(&self, sample: u32, tile: &mut Tile) -> Vec<Path> {
         tile.sample = sample;
@@ -168,8 +177,8 @@ impl EyePass<'_> {
         for pixel in 0..count {
             let [x, y] = self.film_pixel(tile.place, pixel);
             let mut sampler = self.camera_sampler([x, y], sample);
-            let ([dx, dy], weight) = self.filter.sample(sampler.next_2d());
-            tile.weights[pixel as usize] = weight;
+            let ([dx, dy], weight) = self.film_offset(sampler.next_2d());
+            tile.place_sample(pixel, [dx, dy], weight);
             let film = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
             let start = self.camera.ray(film, &mut sampler);
             paths.push(Path {
@@ -527,12 +536,10 @@ impl EyePass<'_> {
             tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
         }
         if let Some(caustic) = &maps.caustic {
-            for list in [list, companions] {
+            for (list, shifts) in [(list, &[[0.0; 2]; 1][..]), (companions, &SHIFTS[..])] {
                 caustic.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-                for (e, found) in list.iter().zip(&out) {
-                    let share = 1.0 / e.places as f32;
-                    tile.add(e.path, Part::Caustic, found.radiance * share);
-                    tile.add_scalar(e.path, Aov::PhotonDensity, found.density * share);
+                for (i, (e, found)) in list.iter().zip(&out).enumerate() {
+                    tile.add_shifted(e.path, shifts[i % shifts.len()], Part::Caustic, found, 1.0 / e.places as f32);
                 }
             }
         }

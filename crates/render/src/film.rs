@@ -100,6 +100,7 @@ impl Aov {
 pub struct FilmLayout {
     offsets: [Option<usize>; Aov::ALL.len()],
     channels: usize,
+    weight: Option<usize>,
 }
 
 impl FilmLayout {
@@ -113,7 +114,23 @@ impl FilmLayout {
                 channels += aov.channels();
             }
         }
-        Self { offsets, channels }
+        Self { offsets, channels, weight: None }
+    }
+
+    /// With one more channel at the end for the weights of samples that several pixels share.
+    pub(crate) fn with_weight(self) -> Self {
+        Self { weight: Some(self.channels), channels: self.channels + 1, ..self }
+    }
+
+    /// Channel of the weights; none where pixels share no samples.
+    #[inline]
+    pub(crate) fn weight(&self) -> Option<usize> {
+        self.weight
+    }
+
+    /// Whether a channel holds sums over samples, and not a value of a pass.
+    pub(crate) fn is_sum(&self, channel: usize) -> bool {
+        [Aov::Variance, Aov::ObjectId, Aov::MaterialId].into_iter().all(|aov| self.offset(aov) != Some(channel))
     }
 
     /// Channels of a pixel.

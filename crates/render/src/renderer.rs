@@ -7,7 +7,7 @@ use crate::counters::Counters;
 use crate::direct::DEFAULT_LEVELS;
 use crate::eye_pass::EyePass;
 use crate::film::{Aov, Film, FilmLayout};
-use crate::film_filter::FilterSampler;
+use crate::film_filter::{FilterSampler, SharedFilter};
 use crate::light::{LightGuide, Lights, SkyView, anchors, shadow_rays};
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
@@ -44,6 +44,8 @@ pub struct Renderer<'w> {
     layout: FilmLayout,
     camera: CameraModel,
     filter: FilterSampler,
+    /// The filter where pixels share samples.
+    shared: Option<SharedFilter>,
     crop: [u32; 4],
     max_depth: u32,
     photons: u32,
@@ -76,6 +78,10 @@ impl<'w> Renderer<'w> {
             aovs.push(Aov::Variance);
         }
         let layout = FilmLayout::new(&aovs);
+        let filter = FilterSampler::new(world.film.filter);
+        // The thesis's renderer keeps its pixels apart.
+        let shared = filter.shared().filter(|_| settings.mode != Mode::Direct);
+        let layout = if shared.is_some() { layout.with_weight() } else { layout };
         let pixels = crop[2] as usize * crop[3] as usize;
         let photons = settings.photons.unwrap_or_else(|| default_photons(settings.mode, pixels));
         let max_depth = settings.max_depth.or(world.integrator.max_depth).unwrap_or(match settings.mode {
@@ -105,7 +111,8 @@ impl<'w> Renderer<'w> {
             world,
             layout,
             camera,
-            filter: FilterSampler::new(world.film.filter),
+            filter,
+            shared,
             crop,
             max_depth,
             photons,
@@ -245,6 +252,7 @@ impl<'w> Renderer<'w> {
             lights: &self.lights,
             camera: &self.camera,
             filter: &self.filter,
+            shared: self.shared.as_ref(),
             layout: &self.layout,
             crop: self.crop,
             seed: self.settings.seed,
@@ -331,6 +339,11 @@ impl<'w> Renderer<'w> {
         };
         let passes = self.film.passes().max(1) as f32;
         for pixel in mean.chunks_exact_mut(self.layout.channels()) {
+            if let Some(weight) = self.layout.weight() {
+                let scale = if pixel[weight] > 0.0 { 1.0 / pixel[weight] } else { 0.0 };
+                let sums = pixel.iter_mut().enumerate().filter(|(channel, _)| self.layout.is_sum(*channel));
+                sums.for_each(|(_, value)| *value *= scale);
+            }
             if let Some(offset) = self.layout.offset(Aov::Variance) {
                 let luminance = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
                 let spread = (pixel[offset] - luminance * luminance).max(0.0);

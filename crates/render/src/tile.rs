@@ -3,6 +3,7 @@
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
 use crate::film::{Aov, FilmLayout};
+use crate::film_filter::SharedFilter;
 use crate::maps::Estimated;
 use photinus_geometry::Vec3;
 use rayon::prelude::*;
@@ -17,6 +18,17 @@ pub(crate) enum Part {
     Indirect,
 }
 
+impl Part {
+    fn aov(self) -> Aov {
+        match self {
+            Self::Emitted => Aov::Emitted,
+            Self::Direct => Aov::Direct,
+            Self::Caustic => Aov::Caustic,
+            Self::Indirect => Aov::Indirect,
+        }
+    }
+}
+
 /// One tile's pixels and buffers.
 pub(crate) struct Tile<'a> {
     /// Channels of each pixel, row by row.
@@ -28,6 +40,32 @@ pub(crate) struct Tile<'a> {
     /// Number of the present sample in the pass.
     pub sample: u32,
     layout: &'a FilmLayout,
+    shared: Option<Shared<'a>>,
+}
+
+/// Sums of the pixels that share a tile's samples: those of the tile and of a border around it.
+struct Shared<'a> {
+    filter: &'a SharedFilter,
+    /// Where each pixel's present sample lies, from the pixel's middle.
+    offsets: Vec<[f32; 2]>,
+    sums: Vec<f32>,
+}
+
+impl Shared<'_> {
+    /// Adds what a sample at `offset` from the middle of a pixel found to the sums of all pixels that share it.
+    fn add(&mut self, [x, y]: [u32; 2], width: u32, offset: [f32; 2], values: &[f32], first: usize, stride: usize) {
+        let (across, down) = (self.filter.weights(offset[0]), self.filter.weights(offset[1]));
+        let reach = self.filter.reach as usize;
+        let row = width as usize + 2 * reach;
+        for (j, wy) in down.iter().enumerate().take(2 * reach + 1).filter(|(_, w)| **w > 0.0) {
+            for (i, wx) in across.iter().enumerate().take(2 * reach + 1).filter(|(_, w)| **w > 0.0) {
+                let at = ((y as usize + j) * row + x as usize + i) * stride + first;
+                for (sum, value) in self.sums[at..at + values.len()].iter_mut().zip(values) {
+                    *sum += value * (wx * wy);
+                }
+            }
+        }
+    }
 }
 
 impl Tile<'_> {
@@ -36,16 +74,62 @@ impl Tile<'_> {
         if !radiance.is_finite() {
             return;
         }
-        let aov = match part {
-            Part::Emitted => Aov::Emitted,
-            Part::Direct => Aov::Direct,
-            Part::Caustic => Aov::Caustic,
-            Part::Indirect => Aov::Indirect,
-        };
         let value = radiance * self.weights[pixel as usize];
         self.add_at(pixel, 0, value);
-        if let Some(offset) = self.layout.offset(aov) {
+        if let Some(offset) = self.layout.offset(part.aov()) {
             self.add_at(pixel, offset, value);
+        }
+    }
+
+    /// Says where the present sample of a pixel lies, from the pixel's middle, and its weight.
+    pub fn place_sample(&mut self, pixel: u32, offset: [f32; 2], weight: f32) {
+        self.weights[pixel as usize] = weight;
+        if let Some(shared) = &mut self.shared {
+            shared.offsets[pixel as usize] = offset;
+        }
+    }
+
+    /// Ends a sample: where pixels share samples, what it found goes to all that share it.
+    pub fn end_sample(&mut self) {
+        let Some(shared) = &mut self.shared else { return };
+        let (channels, width) = (self.layout.channels(), self.place[2]);
+        for (pixel, values) in self.out.chunks_exact_mut(channels).enumerate() {
+            let ids = [Aov::ObjectId, Aov::MaterialId]
+                .map(|aov| self.layout.offset(aov).map(|offset| (offset, std::mem::take(&mut values[offset]))));
+            if let Some(weight) = self.layout.weight() {
+                values[weight] = 1.0;
+            }
+            let at = [pixel as u32 % width, pixel as u32 / width];
+            shared.add(at, width, shared.offsets[pixel], values, 0, channels);
+            values.fill(0.0);
+            for (offset, id) in ids.into_iter().flatten() {
+                values[offset] = id;
+            }
+        }
+    }
+
+    /// Adds to what a pixel's sample found elsewhere: `shift` farther in the pixel, wrapped around.
+    pub fn add_shifted(&mut self, pixel: u32, shift: [f32; 2], part: Part, found: &Estimated, share: f32) {
+        let Some(shared) = &mut self.shared else {
+            self.add(pixel, part, found.radiance * share);
+            self.add_scalar(pixel, Aov::PhotonDensity, found.density * share);
+            return;
+        };
+        if !found.radiance.is_finite() {
+            return;
+        }
+        let wrap = |x: f32, by: f32| (x + 0.5 + by).fract() - 0.5;
+        let [x, y] = shared.offsets[pixel as usize];
+        let offset = [wrap(x, shift[0]), wrap(y, shift[1])];
+        let (width, channels) = (self.place[2], self.layout.channels());
+        let at = [pixel % width, pixel / width];
+        let value = (found.radiance * share).to_array();
+        shared.add(at, width, offset, &value, 0, channels);
+        if let Some(first) = self.layout.offset(part.aov()) {
+            shared.add(at, width, offset, &value, first, channels);
+        }
+        if let Some(first) = self.layout.offset(Aov::PhotonDensity) {
+            shared.add(at, width, offset, &[found.density * share], first, channels);
         }
     }
 
@@ -75,8 +159,11 @@ impl Tile<'_> {
         }
     }
 
-    /// Means over the samples, and values of a pass that are no means.
+    /// Means over the samples, and values of a pass that are no means; shared samples stay sums.
     fn finish(&mut self, samples: u32) {
+        if self.shared.is_some() {
+            return;
+        }
         let scale = 1.0 / samples as f32;
         for pixel in self.out.chunks_exact_mut(self.layout.channels()) {
             let ids = [Aov::ObjectId, Aov::MaterialId]
@@ -102,6 +189,17 @@ pub(crate) struct Tiles<'a> {
     pub samples: u32,
     /// Edge of a tile in pixels; fixed, so that batches do not depend on the machine.
     pub edge: u32,
+    /// The filter where pixels share samples.
+    pub shared: Option<&'a SharedFilter>,
+}
+
+/// What a tile made.
+struct Made {
+    pixels: Vec<f32>,
+    /// Sums with their border, where samples are shared.
+    sums: Vec<f32>,
+    counters: Counters,
+    samples: u32,
 }
 
 impl Tiles<'_> {
@@ -120,7 +218,8 @@ impl Tiles<'_> {
             let (x0, y0) = (tile % across * self.edge, tile / across * self.edge);
             (x0, y0, self.edge.min(width - x0), self.edge.min(height - y0))
         };
-        let results: Vec<Option<(Vec<f32>, Counters, u32)>> = (0..tiles)
+        let reach = self.shared.map_or(0, |filter| filter.reach);
+        let results: Vec<Option<Made>> = (0..tiles)
             .into_par_iter()
             .map(|index| {
                 if observer.cancelled() {
@@ -134,6 +233,11 @@ impl Tiles<'_> {
                     place: [x0, y0, w, h],
                     sample: 0,
                     layout: self.layout,
+                    shared: self.shared.map(|filter| Shared {
+                        filter,
+                        offsets: vec![[0.0; 2]; pixels],
+                        sums: vec![0.0; ((w + 2 * reach) * (h + 2 * reach)) as usize * self.layout.channels()],
+                    }),
                 };
                 let mut counters = Counters::default();
                 let samples = render(index, &mut tile, &mut counters);
@@ -142,14 +246,15 @@ impl Tiles<'_> {
                 }
                 tile.finish(samples);
                 observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(tiles));
-                Some((tile.out, counters, samples))
+                let sums = tile.shared.map_or_else(Vec::new, |shared| shared.sums);
+                Some(Made { pixels: tile.out, sums, counters, samples })
             })
             .collect();
         let mut counters = Counters::default();
         let channels = self.layout.channels();
         let mut complete = true;
         for (index, result) in results.into_iter().enumerate() {
-            let Some((pixels, c, samples)) = result else {
+            let Some(Made { pixels, sums, counters: c, samples }) = result else {
                 complete = false;
                 continue;
             };
@@ -159,9 +264,38 @@ impl Tiles<'_> {
             let row = w as usize * channels;
             for y in 0..h as usize {
                 let to = ((y0 as usize + y) * width as usize + x0 as usize) * channels;
-                film[to..to + row].copy_from_slice(&pixels[y * row..(y + 1) * row]);
+                let own = &pixels[y * row..(y + 1) * row];
+                if self.shared.is_some() {
+                    // Neighbours may have added to it; of its own are labels.
+                    film[to..to + row].iter_mut().zip(own).for_each(|(sum, value)| *sum += value);
+                } else {
+                    film[to..to + row].copy_from_slice(own);
+                }
+            }
+            self.add_sums(film, [x0, y0, w, h], &sums);
+        }
+        if let (Some(offset), Some(weight)) = (self.layout.offset(Aov::Variance), self.layout.weight()) {
+            for pixel in film.chunks_exact_mut(channels) {
+                let luminance = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
+                let mean = luminance / pixel[weight].max(f32::MIN_POSITIVE);
+                pixel[offset] = mean * mean;
             }
         }
         if complete { Ok(counters) } else { Err(Cancelled) }
+    }
+
+    /// Adds the sums of a tile and its border to the film, as far as they lie on it.
+    fn add_sums(&self, film: &mut [f32], [x0, y0, w, h]: [u32; 4], sums: &[f32]) {
+        let Some(filter) = self.shared else { return };
+        let ([_, _, width, height], channels, reach) = (self.window, self.layout.channels(), filter.reach);
+        let row = ((w + 2 * reach) as usize) * channels;
+        let left = reach.saturating_sub(x0);
+        let right = (w + 2 * reach).min(width + reach - x0);
+        for y in reach.saturating_sub(y0)..(h + 2 * reach).min(height + reach - y0) {
+            let from = y as usize * row + left as usize * channels;
+            let to = ((y0 + y - reach) * width + x0 + left - reach) as usize * channels;
+            let count = (right - left) as usize * channels;
+            film[to..to + count].iter_mut().zip(&sums[from..from + count]).for_each(|(sum, value)| *sum += value);
+        }
     }
 }
