@@ -22,7 +22,7 @@ use photinus_photons::GatherQuery;
 use photinus_profile::queries::{BlockKey, RayKind, Stage};
 
 /// Edge of a tile in pixels.
-const TILE: u32 = 32;
+pub(crate) const TILE: u32 = 32;
 
 /// Steps of points that fill the square evenly: powers of the plastic number's inverse (Roberts 2018, the R2 sequence).
 const R2: [f32; 2] = [0.754_877_7, 0.569_840_3];

@@ -39,6 +39,8 @@ pub(crate) struct Ahead {
     pub passes: u32,
     /// The passes are a guess, as time decides.
     pub is_guess: bool,
+    /// Size of the tiles before they are put together, over that of the film: shared samples make borders.
+    pub tiles: f64,
     /// Photons stored by a pass, in the global map and in the caustic map.
     pub stored: [u64; 2],
     /// The photons of the first pass serve all.
@@ -50,7 +52,7 @@ pub(crate) struct Ahead {
 impl RenderMemory {
     /// The largest of the three moments that can be the peak.
     pub(crate) fn predict(ahead: &Ahead) -> Self {
-        let &Ahead { values, passes, stored: [global, caustic], lights, .. } = ahead;
+        let &Ahead { values, passes, tiles, stored: [global, caustic], lights, .. } = ahead;
         let stored = global + caustic;
         let buffer = values * 4;
         let before = Film::held_before(passes);
@@ -64,7 +66,8 @@ impl RenderMemory {
         let left = (building / 4).min(most_left);
         let map_build = Self { film: at_build * buffer, photons: building + left, lights };
         // The pass's own buffer, and its tiles before they are put together.
-        let eye_pass = Self { film: (before + 2) * buffer, photons: stored * PHOTON_BYTES + left, lights };
+        let film = (before + 1) * buffer + (buffer as f64 * tiles) as u64;
+        let eye_pass = Self { film, photons: stored * PHOTON_BYTES + left, lights };
         let kept = if ahead.maps_once { stored * PHOTON_BYTES } else { left };
         let writing = Self { film: after * buffer + buffer * WRITE_HALVES / 2, photons: kept, lights };
         [map_build, eye_pass, writing].into_iter().max_by_key(Self::total).unwrap_or_default()

@@ -5,7 +5,7 @@ use crate::caustic_plan::CausticPlan;
 use crate::control::{Cancelled, Observer, Phase};
 use crate::counters::Counters;
 use crate::direct::DEFAULT_LEVELS;
-use crate::eye_pass::EyePass;
+use crate::eye_pass::{EyePass, TILE};
 use crate::film::{Aov, Film, FilmLayout};
 use crate::film_filter::{FilterSampler, SharedFilter};
 use crate::light::{LightGuide, Lights, SkyView, anchors, shadow_rays};
@@ -196,6 +196,10 @@ impl<'w> Renderer<'w> {
             values: pixels * self.layout.channels() as u64,
             passes,
             is_guess,
+            tiles: self.shared.as_ref().map_or(1.0, |filter| {
+                let edge = f64::from(TILE + 2 * filter.reach) / f64::from(TILE);
+                edge * edge
+            }),
             stored: self.stored,
             maps_once: matches!(self.settings.mode, Mode::Gather | Mode::Direct),
             lights: (self.lights.bytes() + self.caustics.as_ref().map_or(0, |plan| plan.guide.bytes())) as u64,

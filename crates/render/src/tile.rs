@@ -161,11 +161,20 @@ impl Tile<'_> {
 
     /// Means over the samples, and values of a pass that are no means; shared samples stay sums.
     fn finish(&mut self, samples: u32) {
-        if self.shared.is_some() {
+        let channels = self.layout.channels();
+        if let Some(shared) = &mut self.shared {
+            // Labels belong to their own pixels.
+            let (reach, width) = (shared.filter.reach as usize, self.place[2] as usize);
+            for offset in [Aov::ObjectId, Aov::MaterialId].into_iter().filter_map(|aov| self.layout.offset(aov)) {
+                for (pixel, values) in self.out.chunks_exact(channels).enumerate() {
+                    let at = (pixel / width + reach) * (width + 2 * reach) + pixel % width + reach;
+                    shared.sums[at * channels + offset] = values[offset];
+                }
+            }
             return;
         }
         let scale = 1.0 / samples as f32;
-        for pixel in self.out.chunks_exact_mut(self.layout.channels()) {
+        for pixel in self.out.chunks_exact_mut(channels) {
             let ids = [Aov::ObjectId, Aov::MaterialId]
                 .map(|aov| self.layout.offset(aov).map(|offset| (offset, pixel[offset])));
             pixel.iter_mut().for_each(|v| *v *= scale);
@@ -195,9 +204,8 @@ pub(crate) struct Tiles<'a> {
 
 /// What a tile made.
 struct Made {
+    /// Means of its pixels; where samples are shared, sums with their border.
     pixels: Vec<f32>,
-    /// Sums with their border, where samples are shared.
-    sums: Vec<f32>,
     counters: Counters,
     samples: u32,
 }
@@ -246,33 +254,29 @@ impl Tiles<'_> {
                 }
                 tile.finish(samples);
                 observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(tiles));
-                let sums = tile.shared.map_or_else(Vec::new, |shared| shared.sums);
-                Some(Made { pixels: tile.out, sums, counters, samples })
+                Some(Made { pixels: tile.shared.map_or(tile.out, |shared| shared.sums), counters, samples })
             })
             .collect();
         let mut counters = Counters::default();
         let channels = self.layout.channels();
         let mut complete = true;
         for (index, result) in results.into_iter().enumerate() {
-            let Some(Made { pixels, sums, counters: c, samples }) = result else {
+            let Some(Made { pixels, counters: c, samples }) = result else {
                 complete = false;
                 continue;
             };
             complete &= samples == self.samples;
             counters += c;
             let (x0, y0, w, h) = place(index as u32);
+            if let Some(filter) = self.shared {
+                self.add_sums(film, [x0, y0, w, h], &pixels, filter.reach);
+                continue;
+            }
             let row = w as usize * channels;
             for y in 0..h as usize {
                 let to = ((y0 as usize + y) * width as usize + x0 as usize) * channels;
-                let own = &pixels[y * row..(y + 1) * row];
-                if self.shared.is_some() {
-                    // Neighbours may have added to it; of its own are labels.
-                    film[to..to + row].iter_mut().zip(own).for_each(|(sum, value)| *sum += value);
-                } else {
-                    film[to..to + row].copy_from_slice(own);
-                }
+                film[to..to + row].copy_from_slice(&pixels[y * row..(y + 1) * row]);
             }
-            self.add_sums(film, [x0, y0, w, h], &sums);
         }
         if let (Some(offset), Some(weight)) = (self.layout.offset(Aov::Variance), self.layout.weight()) {
             for pixel in film.chunks_exact_mut(channels) {
@@ -285,9 +289,8 @@ impl Tiles<'_> {
     }
 
     /// Adds the sums of a tile and its border to the film, as far as they lie on it.
-    fn add_sums(&self, film: &mut [f32], [x0, y0, w, h]: [u32; 4], sums: &[f32]) {
-        let Some(filter) = self.shared else { return };
-        let ([_, _, width, height], channels, reach) = (self.window, self.layout.channels(), filter.reach);
+    fn add_sums(&self, film: &mut [f32], [x0, y0, w, h]: [u32; 4], sums: &[f32], reach: u32) {
+        let ([_, _, width, height], channels) = (self.window, self.layout.channels());
         let row = ((w + 2 * reach) as usize) * channels;
         let left = reach.saturating_sub(x0);
         let right = (w + 2 * reach).min(width + reach - x0);

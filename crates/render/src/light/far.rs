@@ -14,6 +14,10 @@ const WIDE: f32 = 0.3;
 /// Light of an item that is not seen from an anchor counts as if this share of it were.
 const UNSEEN: f64 = 0.01;
 
+/// Discs around each anchor: radius over its own, and share of its photons. The wider one catches what passes near it, whose
+/// photons would be much stronger else.
+const AROUND: [(f32, f64); 2] = [(1.0, 0.75), (2.0, 0.25)];
+
 /// A small disc.
 #[derive(Clone, Debug)]
 struct Small {
@@ -53,8 +57,11 @@ impl Discs {
         let mut weights = Vec::new();
         for (anchor, open) in anchors.iter().zip(open) {
             let shares: Vec<f64> = powers.iter().zip(open).map(|(p, open)| p * (open + UNSEEN)).collect();
-            weights.push(anchor.weight);
-            self.small.push(Small { anchor: *anchor, share: 0.0, items: LightChoice::new(&shares) });
+            for (wider, share) in AROUND {
+                let anchor = Anchor { radius: wider * anchor.radius, ..*anchor };
+                weights.push(share * anchor.weight);
+                self.small.push(Small { anchor, share: 0.0, items: LightChoice::new(&shares) });
+            }
         }
         self.choice = LightChoice::new(&weights);
         for (i, small) in self.small.iter_mut().enumerate() {
@@ -154,4 +161,58 @@ fn rings(world: &World, region: VisibleRegion) -> Vec<(f32, f32)> {
     }
     let others = 0.5 / (radii.len() - 1) as f32;
     radii.into_iter().enumerate().map(|(i, r)| (r, if i == 0 { 0.5 } else { others })).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use photinus_num::{Sampler, StreamKind};
+
+    /// Two lights at infinity and two places, each of which sees one of them well. For each light and direction, the sum of
+    /// 1 / (density of the place times probability of the light) over the starts that cross a window estimates the
+    /// window's area, wherever it lies: near a place, beside all, and far outside of the inner ring.
+    #[test]
+    fn starts_have_the_density_that_is_stated() {
+        let region = VisibleRegion { center: Vec3::new(1.0, 0.0, 0.5), radius: 2.0 };
+        let anchor = |x: f32, radius: f32, weight: f64| Anchor { center: Vec3::new(x, 0.3, 0.0), radius, weight };
+        let mut discs = Discs {
+            region,
+            rings: vec![(2.0, 0.5), (4.0, 0.25), (8.0, 0.25)],
+            small: Vec::new(),
+            choice: LightChoice::default(),
+        };
+        let powers = [0.25f64, 0.5];
+        discs.add_small(&[anchor(0.0, 0.3, 1.0), anchor(1.5, 0.5, 3.0)], &[vec![1.0, 0.0], vec![0.2, 0.9]], &powers);
+        // A near light has the remaining quarter.
+        let far = 0.75f32;
+        let dirs = [Vec3::new(0.2, -0.9, 0.3).normalize(), Vec3::new(-0.5, -0.5, 0.6).normalize()];
+        let windows =
+            [(Vec3::new(0.05, 0.3, 0.0), 0.2f32), (Vec3::new(2.2, 0.0, 0.5), 0.3), (Vec3::new(6.0, 0.0, 0.0), 1.5)];
+        let n = 400_000u32;
+        let mut areas = [[0.0f64; 3]; 2];
+        for i in 0..n {
+            let mut sampler = Sampler::new(11, StreamKind::Test, 4, i);
+            let (u, choice, light) = (sampler.next_2d(), sampler.next_1d(), sampler.next_1d());
+            // The choice among all lights led to those at infinity with probability `far`.
+            let item = match discs.choose(choice) {
+                Disc::Wide(_) => usize::from(light >= 1.0 / 3.0),
+                Disc::Small(small) => discs.item(small, light).expect("both have power").0,
+            };
+            let by_power = powers[item] as f32;
+            let (ray, density) = discs.start(discs.choose(choice), dirs[item], u, item, by_power, far);
+            for (window, (center, radius)) in windows.iter().enumerate() {
+                let to = *center - ray.origin;
+                let across = to - ray.dir * to.dot(ray.dir);
+                if across.length() < *radius {
+                    areas[item][window] += f64::from(far / (density * by_power)) / f64::from(n);
+                }
+            }
+        }
+        for (item, areas) in areas.iter().enumerate() {
+            for (area, (_, radius)) in areas.iter().zip(&windows) {
+                let ratio = area / f64::from(PI * radius * radius);
+                assert!((ratio - 1.0).abs() < 0.04, "light {item}, window of radius {radius}: {ratio}");
+            }
+        }
+    }
 }
