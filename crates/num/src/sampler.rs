@@ -24,6 +24,8 @@ pub enum StreamKind {
     /// Directions to the sky that a pass draws from: the stream is the part of the sky, the index the direction (over all
     /// passes).
     Sky = 8,
+    /// Points of an estimate's disc that are looked at: streams and indices as of camera samples.
+    Support = 9,
 }
 
 /// Dimensions beyond this many draw plain random numbers: long paths gain nothing from stratification.

@@ -24,6 +24,8 @@ pub struct RayCounts {
     pub shadow: u64,
     /// Rays from a diffuse surface that look for lights, to weight against shadow rays.
     pub gather: u64,
+    /// Rays that look how much of an estimate's disc is surface.
+    pub support: u64,
     /// Any of these once more, from behind a hole that let it through.
     pub beyond: u64,
 }
@@ -31,7 +33,7 @@ pub struct RayCounts {
 impl RayCounts {
     /// All rays traced.
     pub fn total(&self) -> u64 {
-        self.photon + self.camera + self.specular + self.shadow + self.gather + self.beyond
+        self.photon + self.camera + self.specular + self.shadow + self.gather + self.support + self.beyond
     }
 }
 
@@ -135,7 +137,7 @@ impl AddAssign for PhotonCounts {
 
 impl AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
-        add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather, beyond);
+        add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather, support, beyond);
         add!(self, other; photons, caustic_photons, searches, photons_found);
         add!(self, other; sampled_rays, sampled_searches, sampled_estimates, spent);
     }

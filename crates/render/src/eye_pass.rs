@@ -12,13 +12,14 @@ use crate::film_filter::{FilterSampler, SharedFilter};
 use crate::light::{Lights, Place};
 use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps};
 use crate::recording::NOT_YET;
+use crate::support::{CutPixels, Look, Looker, points_for};
 use crate::tile::{Part, Tile, Tiles};
 use crate::trace::{Tracer, shadow_ray};
 use crate::twin::{Queries, Twin};
 use crate::world::World;
 use photinus_geometry::{Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
-use photinus_photons::GatherQuery;
+use photinus_photons::{GatherQuery, Kernel};
 use photinus_profile::queries::{BlockKey, RayKind, Stage};
 
 /// Edge of a tile in pixels.
@@ -53,6 +54,8 @@ pub(crate) struct EyePass<'a> {
     pub profile_every: u32,
     /// Shadow rays from each surface that is seen, directly or by mirrors; one from those after a diffuse bounce.
     pub shadow_rays: u32,
+    /// Pixels whose estimates are told how much of their discs is surface; none: all of it.
+    pub cut_pixels: Option<&'a CutPixels>,
 }
 
 #[derive(Clone)]
@@ -517,6 +520,31 @@ impl EyePass<'_> {
         }
     }
 
+    /// How much of the discs of estimates is surface.
+    fn shares(
+        &self,
+        kernel: Kernel,
+        list: &[Estimate],
+        found: &[Estimated],
+        tile: &Tile,
+        tracer: &mut Tracer,
+        counters: &mut Counters,
+    ) -> Vec<f32> {
+        let Some(pixels) = self.cut_pixels else { return vec![1.0; list.len()] };
+        let sample = self.pass * self.spp + tile.sample;
+        let origin = [self.crop[0], self.crop[1]];
+        let looker = Looker { world: self.world, kernel, pixels, seed: self.seed, origin, sample };
+        let [x0, y0, width, _] = tile.place;
+        let pixel = |path: u32| [x0 + path % width, y0 + path / width];
+        let look = |(e, found): (&Estimate, &Estimated)| {
+            let mine = found.radiance.element_sum();
+            let others = tile.light(e.path).element_sum();
+            Look { radius: found.radius, count: points_for(mine / (mine + others)) }
+        };
+        let looks: Vec<Look> = list.iter().zip(found).map(look).collect();
+        looker.shares(list, &looks, pixel, tracer, counters)
+    }
+
     /// Answers the estimates of a batch from the maps.
     fn gather(
         &self,
@@ -531,9 +559,10 @@ impl EyePass<'_> {
         let mut out: Vec<Estimated> = Vec::new();
         let (list, companions) = (&estimates.list, &estimates.companions);
         maps.global.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-        for (e, found) in list.iter().zip(&out) {
-            tile.add(e.path, Part::Indirect, found.radiance);
-            tile.add_scalar(e.path, Aov::PhotonDensity, found.density);
+        let shares = self.shares(maps.global.kernel, list, &out, tile, tracer, counters);
+        for ((e, found), share) in list.iter().zip(&out).zip(shares) {
+            tile.add(e.path, Part::Indirect, found.radiance / share);
+            tile.add_scalar(e.path, Aov::PhotonDensity, found.density / share);
         }
         if let Some(caustic) = &maps.caustic {
             for (list, shifts) in [(list, &[[0.0; 2]; 1][..]), (companions, &SHIFTS[..])] {

@@ -23,6 +23,7 @@ mod pilot;
 mod recording;
 mod renderer;
 mod settings;
+mod support;
 mod surface;
 pub mod texture;
 mod tile;

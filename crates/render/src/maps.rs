@@ -81,11 +81,12 @@ impl Estimates {
     }
 }
 
-/// What an estimate found: reflected radiance times throughput, and photons per area.
+/// What an estimate found: reflected radiance times throughput, photons per area, and the radius that they were within.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Estimated {
     pub radiance: Vec3,
     pub density: f32,
+    pub radius: f32,
 }
 
 /// Buffers of a batch of estimates.
@@ -255,7 +256,7 @@ impl Map {
     fn estimated(&self, e: &Estimate, flux: Vec3, count: u32, radius: f32) -> Estimated {
         let Scatter::Constant(factor) = e.scatter else { return Estimated::default() };
         let irradiance = flux / self.kernel.area(radius.max(LEAST_RADIUS));
-        Estimated { radiance: e.throughput * factor * irradiance, density: density(count, radius) }
+        Estimated { radiance: e.throughput * factor * irradiance, density: density(count, radius), radius }
     }
 
     /// The map's radius, or the pixel's where that is wider, up to three times the map's so that far pixels do not
@@ -298,6 +299,7 @@ impl Map {
         Estimated {
             radiance: e.throughput * sum / self.kernel.area(query.radius),
             density: density(count, query.radius),
+            radius: query.radius,
         }
     }
 
@@ -330,7 +332,7 @@ impl Map {
             sum += scattered(bsdf, photon.direction()) * photon.flux() * self.kernel.weight(*d2, radius);
         }
         let area = self.kernel.area(radius.max(LEAST_RADIUS));
-        Estimated { radiance: e.throughput * sum / area, density: density(count, radius) }
+        Estimated { radiance: e.throughput * sum / area, density: density(count, radius), radius }
     }
 }
 

@@ -14,6 +14,7 @@ use crate::memory::{Ahead, RenderMemory};
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
+use crate::support::CutPixels;
 use crate::world::World;
 use photinus_num::StreamKind;
 use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError};
@@ -59,6 +60,8 @@ pub struct Renderer<'w> {
     probe: bool,
     /// Shadow rays of each visible point.
     shadow_rays: u32,
+    /// Pixels whose photon estimates are cut by something; only where a picture has them among other light.
+    cut_pixels: Option<CutPixels>,
     /// Maps that all passes share, in the modes with one photon map.
     shared_maps: Option<Maps>,
     film: Film,
@@ -118,6 +121,8 @@ impl<'w> Renderer<'w> {
             photons,
             probe: lights.has_environment() || view.lamps_are_wide(),
             shadow_rays,
+            cut_pixels: matches!(settings.mode, Mode::Progressive | Mode::Gather)
+                .then(|| CutPixels::new(crop[2], crop[3])),
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
             caustics: None,
@@ -267,6 +272,7 @@ impl<'w> Renderer<'w> {
             probe: self.probe,
             profile_every: self.settings.profile_every,
             shadow_rays: self.shadow_rays,
+            cut_pixels: self.cut_pixels.as_ref(),
         };
         let result = match (self.settings.mode, maps) {
             (Mode::Direct, Some(maps)) => eye.run_direct(maps, &mut buffer, observer),
@@ -277,6 +283,9 @@ impl<'w> Renderer<'w> {
                 self.counters += counters;
                 self.film.add(buffer);
                 self.partial = None;
+                if let Some(pixels) = &mut self.cut_pixels {
+                    pixels.advance();
+                }
                 Ok(())
             }
             Err(cancelled) => {

@@ -133,6 +133,13 @@ impl Tile<'_> {
         }
     }
 
+    /// The light of a pixel by its own samples, a mean sample's.
+    pub fn light(&self, pixel: u32) -> Vec3 {
+        let light = Vec3::from_slice(&self.out[pixel as usize * self.layout.channels()..]);
+        // What is shared is handed on after each sample.
+        if self.shared.is_some() { light } else { light / (self.sample + 1) as f32 }
+    }
+
     /// Adds to three channels from `offset`.
     pub fn add_at(&mut self, pixel: u32, offset: usize, value: Vec3) {
         let start = pixel as usize * self.layout.channels() + offset;

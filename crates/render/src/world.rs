@@ -245,6 +245,27 @@ impl World {
         self.bounds
     }
 
+    /// The geometric normal at a hit, towards the outside: that of [`Self::surface`], for less.
+    pub(crate) fn outward_normal(&self, ray: &Ray, hit: &Hit) -> Vec3 {
+        let record = &self.shapes[self.shape_of(hit.prim)];
+        let triangles = self.primitives.triangle_count() as u32;
+        if hit.prim >= triangles {
+            let centre = self.primitives.spheres[(hit.prim - triangles) as usize].center;
+            let outward = (ray.at(hit.t) - centre).try_normalize().unwrap_or(Vec3::Z);
+            return if record.flip_normals { -outward } else { outward };
+        }
+        let [a, b, c] = self.primitives.triangle(hit.prim as usize);
+        let face = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z);
+        if record.normals == NONE {
+            return face;
+        }
+        let weights = [1.0 - hit.alpha - hit.beta, hit.alpha, hit.beta];
+        let vertices = self.primitives.triangles[hit.prim as usize];
+        let normal =
+            |i: usize| self.normals[(record.normals + vertices[i] - record.first_vertex) as usize] * weights[i];
+        if face.dot(normal(0) + normal(1) + normal(2)) < 0.0 { -face } else { face }
+    }
+
     /// The surface at a hit. `width` is the width of the pixel's cone there, in scene units; 0 where unknown.
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
         let shape = self.shape_of(hit.prim);

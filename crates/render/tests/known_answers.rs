@@ -69,6 +69,43 @@ fn partial_sums_of_a_furnace() {
     }
 }
 
+/// Where every surface has albedo 0.5 and sends out 0.25, radiance is 0.5 everywhere, whatever stands in the room: in
+/// corners, on the rims of a plate, around a thin pole, on a ball not much wider than the gather radius.
+#[test]
+fn edges_and_small_things_in_a_furnace() {
+    let view = camera(Vec3::new(-0.8, 0.75, 0.9), Vec3::new(0.1, -0.45, -0.1), 75.0);
+    let mut scene = scene(view, 64);
+    let id = scene.material(diffuse(0.5));
+    let mut quad =
+        |corner: [f32; 3], u: [f32; 3], v: [f32; 3]| scene.quad(corner.into(), u.into(), v.into(), id, Some(0.25));
+    // A box's sides, normals u x v: the room's towards its inside, those of things towards their outside.
+    let mut cuboid = |min: Vec3, size: Vec3, inside: bool| {
+        for axis in 0..3 {
+            let [u, v] = [(axis + 1) % 3, (axis + 2) % 3].map(|a| (Vec3::AXES[a] * size[a]).to_array());
+            let far = min + Vec3::AXES[axis] * size[axis];
+            let (up, down) = if inside { (min, far) } else { (far, min) };
+            quad(up.to_array(), u, v);
+            quad(down.to_array(), v, u);
+        }
+    };
+    cuboid(Vec3::splat(-1.0), Vec3::splat(2.0), true);
+    cuboid(Vec3::new(0.2, -1.0, -0.6), Vec3::new(0.4, 0.5, 0.4), false);
+    cuboid(Vec3::new(-0.5, -0.62, -0.3), Vec3::new(0.5, 0.004, 0.3), false);
+    cuboid(Vec3::new(0.0, -1.0, 0.4), Vec3::new(0.03, 1.2, 0.03), false);
+    scene.sphere(Vec3::new(0.5, -0.85, 0.3), 0.15, false, id, Some(0.25));
+    let world = world(scene);
+    for mode in [Mode::Progressive, Mode::Gather] {
+        let settings = Settings { photons: Some(60_000), spp: 2, radius: Some(0.1), ..settings(mode) };
+        let pixels = render(&world, settings, 12).0;
+        let errors: Vec<f64> = pixels.iter().map(|p| mean(&[*p]) / 0.5 - 1.0).collect();
+        let of_square = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+        let worst = errors.iter().fold(0f64, |worst, e| worst.max(e.abs()));
+        let mean = mean(&pixels);
+        println!("{mode:?}: mean {mean:.4}, root mean square error {of_square:.4}, worst {worst:.3}");
+        assert!((mean / 0.5 - 1.0).abs() < 0.004, "{mode:?}: mean {mean}");
+    }
+}
+
 /// A convex body of albedo rho under a constant environment of 1 has radiance rho; glass and mirrors have 1.
 #[test]
 fn open_furnaces() {

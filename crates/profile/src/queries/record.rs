@@ -16,11 +16,13 @@ pub enum RayKind {
     Shadow,
     /// From a diffuse surface, looks for lights.
     Gather,
+    /// Looks how much of an estimate's disc is surface.
+    Support,
 }
 
 impl RayKind {
     /// Every one, in the order of their numbers in a file.
-    pub const ALL: [Self; 5] = [Self::Photon, Self::Camera, Self::Specular, Self::Shadow, Self::Gather];
+    pub const ALL: [Self; 6] = [Self::Photon, Self::Camera, Self::Specular, Self::Shadow, Self::Gather, Self::Support];
 }
 
 /// Where a ray met a primitive.
