@@ -15,8 +15,8 @@ const FINE_CELLS: usize = 1 << (3 * FINE_LEVELS);
 const EDGE_IN_RADII: f32 = 2.02;
 /// Bits of a fine cell along an axis: its place is exact to a quarter of a fine cell, and three fit a key.
 const AXIS_BITS: u32 = 21;
-/// Bits of a quarter of a fine cell along an axis in a key of queries: three and nine bits more fit one.
-const NEIGHBOURHOOD_BITS: u32 = 18;
+/// Bits of a quarter of a fine cell along an axis in a key of queries: three and three bits more fit one.
+const NEIGHBOURHOOD_BITS: u32 = 20;
 /// Least edge of a fine cell, scene units: photons closer than 1e-18 have a squared distance that underflows, so that
 /// they may be found at any radius; that must be far less than a fine cell.
 const MIN_FINE_EDGE: f64 = 1e-15;

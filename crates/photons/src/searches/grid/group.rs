@@ -23,6 +23,8 @@ const LEAST_RADIUS: f32 = 1e-15;
 const GREATEST_RADIUS: f32 = 1e18;
 /// What rounding may add to a distance, as a part of it, with a margin.
 const SLACK: f32 = 1e-5;
+/// More photons than this are not shared, as they would outgrow the caches and the memory that threads are to have.
+const MOST_SHARED: u64 = 1 << 16;
 
 impl Grid {
     /// Sums the nearest of each query of a batch; returns the photons tested.
@@ -116,7 +118,10 @@ impl Group<'_> {
 
     fn together(&mut self, members: &[Member]) {
         let bounds = Aabb::around(members.iter().map(|member| member.query.position));
-        let ball = Ball { centre: (bounds.min + bounds.max) * 0.5, half: 0.5 * bounds.diagonal() };
+        let centre = (bounds.min + bounds.max) * 0.5;
+        // The middle may be rounded by as much as members lie apart: half of the box's diagonal may fall short.
+        let half = members.iter().fold(0f32, |half, member| half.max((member.query.position - centre).length()));
+        let ball = Ball { centre, half };
         let most = members.iter().fold(0f32, |most, member| most.max(member.radius));
         let mut reach = (self.finder.last_radius * WIDER).min(most);
         let mut left = members;
@@ -131,7 +136,8 @@ impl Group<'_> {
         left.iter().for_each(|member| self.alone(member));
     }
 
-    /// Collects the photons within a distance of all members; not where that is too small or too large to reckon with.
+    /// Collects the photons within a distance of all members; not where that is too small or too large to reckon with, nor
+    /// where they may be too many.
     fn share(&mut self, ball: &Ball, reach: f32, members: &[Member]) -> bool {
         let extent = ball.extent(reach);
         if !(extent > LEAST_RADIUS && extent < GREATEST_RADIUS) {
@@ -142,7 +148,11 @@ impl Group<'_> {
         (query.position, query.r2) = (ball.centre, extent * extent);
         let finder = &mut self.finder;
         self.grid.find_blocks(query.position, extent, query.r2, &mut finder.scratch);
-        finder.tested += self.grid.photons_in(&finder.scratch);
+        let reached = self.grid.photons_in(&finder.scratch);
+        if reached > MOST_SHARED {
+            return false;
+        }
+        finder.tested += reached;
         let share = Share { query, same_normal };
         (self.grid.kernels.shared.collect)(&self.grid.blocks, &finder.scratch.hits, &share, &mut finder.shared);
         finder.shared_extent = extent;
@@ -185,6 +195,7 @@ impl Group<'_> {
 /// Where the members of a group lie.
 struct Ball {
     centre: Vec3,
+    /// Distance from the centre to the farthest of them.
     half: f32,
 }
 

@@ -129,3 +129,62 @@ fn a_large_map_is_laid_out_alike_by_any_number_of_threads() {
         }
     }
 }
+
+/// Queries as close to one another as numbers are, whose middle is none: radius 0 finds what lies at the very position, in
+/// whatever company.
+#[test]
+fn neighbours_that_are_one_number_apart_find_what_is_theirs() {
+    let x = 1000f32;
+    let places = [x, x.next_up()].map(|x| Vec3::new(x, 0.0, 0.0));
+    let photon = |p: Vec3| Photon::new(p, Vec3::ONE, Vec3::Z, Vec3::Z, 1, false).expect("a photon");
+    let mut photons: Vec<Photon> = places.into_iter().flat_map(|p| [photon(p); 5]).collect();
+    photons.push(photon(Vec3::new(x - 1.0, 0.0, 0.0)));
+    let grid = Grid::new(photons, &BuildOptions { radius_hint: 1.0 });
+    let at = |position: Vec3, radius: f32| GatherQuery { position, radius, normal: Vec3::Z, max_depth: 9 };
+    // The first needs a wide ball, which lets the others be answered together.
+    let mut queries = vec![at(Vec3::new(x, 0.01, 0.0), 0.5)];
+    queries.extend((0..8).map(|i| at(places[i % 2], 0.0)));
+    for queries in [queries.clone(), queries.into_iter().rev().collect()] {
+        let mut together = vec![GatheredNearest::default(); queries.len()];
+        grid.gather_nearest(&queries, 3, Kernel::Constant, &mut together);
+        for (query, together) in queries.iter().zip(&together) {
+            let mut alone = [GatheredNearest::default()];
+            grid.gather_nearest(std::slice::from_ref(query), 3, Kernel::Constant, &mut alone);
+            assert_eq!(*together, alone[0], "{query:?}");
+        }
+    }
+}
+
+/// Photons in heaps, more and fewer than are shared, of which a query is turned towards every other one, so that half of the
+/// lanes stay empty.
+#[test]
+fn heaps_are_summed_as_one_by_one() {
+    let heap = |x: f32, count: usize| {
+        (0..count).map(move |i| {
+            let normal = if i % 2 == 0 { Vec3::Z } else { Vec3::X };
+            let flux = Vec3::new(1.0, 0.3, 7.0) * (1.0 + (i % 97) as f32);
+            Photon::new(Vec3::new(x, 0.0, 0.0), flux, Vec3::Z, normal, 1, false).expect("a photon")
+        })
+    };
+    let photons: Vec<Photon> = heap(0.0, 100_000).chain(heap(9.0, 30_000)).collect();
+    for &kernels in kernels::available() {
+        let grid = Grid::with_kernels(photons.clone(), &BuildOptions { radius_hint: 1.0 }, kernels);
+        for k in [5, 14_000, u32::MAX] {
+            let near = |i: usize| GatherQuery {
+                position: Vec3::new([0.0, 9.0][i % 2], 0.01 * i as f32, 0.0),
+                radius: 1.0,
+                normal: if i < 20 { Vec3::Z } else { Vec3::new(0.1, 0.0, 1.0).normalize() },
+                max_depth: 9,
+            };
+            let queries: Vec<GatherQuery> = (0..40).map(near).collect();
+            let mut together = vec![GatheredNearest::default(); queries.len()];
+            grid.gather_nearest(&queries, k, Kernel::Epanechnikov, &mut together);
+            for (query, together) in queries.iter().zip(&together) {
+                let mut alone = [GatheredNearest::default()];
+                grid.gather_nearest(std::slice::from_ref(query), k, Kernel::Epanechnikov, &mut alone);
+                assert_eq!(*together, alone[0], "{}, {k} nearest, {query:?}", kernels.name);
+                assert!(together.count >= 15_000, "{query:?}: {}", together.count);
+            }
+        }
+    }
+}

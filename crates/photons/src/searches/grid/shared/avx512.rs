@@ -80,8 +80,7 @@ fn collect_blocks(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Sh
     let query = &share.query;
     let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
     let low_limit = _mm512_set1_epi32(query.low_limit as i32);
-    // Rows before this one are full.
-    let mut first_open = 0;
+    let mut heights = _mm512_setzero_si512();
     for block in hits {
         let block = &blocks[*block as usize];
         let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(distances_sq(block, position), r2);
@@ -97,22 +96,21 @@ fn collect_blocks(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Sh
             wanted = within_60(wanted, normal, quarter, facing);
         }
         let fields = fields(block, normal, quarter);
-        let mut row = first_open;
+        let higher = _mm512_mask_add_epi32(heights, wanted, heights, _mm512_set1_epi32(1));
+        // Lanes of equal height go to one row together.
         while wanted != 0 {
-            if row == shared.filled.len() {
+            let row = shared.heights[wanted.trailing_zeros() as usize];
+            if row as usize == shared.filled.len() {
                 shared.add_row();
             }
-            let taken = wanted & !shared.filled[row];
-            if taken != 0 {
-                set_lanes(&mut shared.rows[row], taken, &fields);
-                shared.filled[row] |= taken;
-                wanted &= !taken;
-            }
-            if shared.filled[row] == __mmask16::MAX && row == first_open {
-                first_open += 1;
-            }
-            row += 1;
+            let taken = _mm512_mask_cmpeq_epi32_mask(wanted, heights, _mm512_set1_epi32(row as i32));
+            set_lanes(&mut shared.rows[row as usize], taken, &fields);
+            shared.filled[row as usize] |= taken;
+            wanted &= !taken;
         }
+        heights = higher;
+        // SAFETY: the array holds the sixteen numbers written.
+        unsafe { _mm512_storeu_si512(shared.heights.as_mut_ptr().cast(), heights) };
     }
 }
 

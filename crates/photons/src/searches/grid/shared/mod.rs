@@ -75,6 +75,8 @@ pub(crate) struct Shared {
     rows: Vec<Row>,
     /// Photons in each row in use, a bit a lane.
     filled: Vec<u16>,
+    /// Rows that each lane fills.
+    heights: [u32; LANES],
     /// Whether the normals of `rows` have passed the test.
     same_normal: bool,
     /// Squared distance of each lane of each row where it is found, infinite elsewhere.
@@ -102,8 +104,11 @@ fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
             let surface = block.surface[lane];
             let is_wanted = || if share.same_normal { query.accepts(surface) } else { query.is_shallow(surface) };
             if d2 <= query.r2 && is_wanted() {
-                let height = shared.filled.iter().position(|filled| filled & 1 << lane == 0);
-                let height = height.unwrap_or_else(|| shared.add_row());
+                let height = shared.heights[lane] as usize;
+                if height == shared.filled.len() {
+                    shared.add_row();
+                }
+                shared.heights[lane] += 1;
                 shared.filled[height] |= 1 << lane;
                 shared.rows[height].set(lane, block);
             }
@@ -173,19 +178,18 @@ impl Shared {
     #[inline]
     fn start(&mut self, share: &Share) {
         self.filled.clear();
+        self.heights = [0; LANES];
         self.same_normal = share.same_normal;
     }
 
-    /// The index of a new row.
+    /// Takes an empty row into use.
     #[inline]
-    fn add_row(&mut self) -> usize {
-        let row = self.filled.len();
-        match self.rows.get_mut(row) {
+    fn add_row(&mut self) {
+        match self.rows.get_mut(self.filled.len()) {
             Some(row) => row.position[0] = [f32::NAN; LANES],
             None => self.rows.push(Row::EMPTY),
         }
         self.filled.push(0);
-        row
     }
 
     /// The rows in use.
