@@ -151,6 +151,7 @@ impl EyePass<'_> {
                 path: node.pixel,
                 places: 1,
                 ray: node.record,
+                offset: point.offset,
             });
         }
         if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {

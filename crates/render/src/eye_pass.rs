@@ -401,8 +401,8 @@ impl EyePass<'_> {
             normal: point.geometric_normal * side,
             max_depth: (self.max_depth - path.depth).min(127),
         };
-        let mut estimate =
-            Estimate { query, scatter, throughput: path.throughput, path: path.pixel, places: 1, ray: path.record };
+        let (throughput, offset, ray) = (path.throughput, point.offset, path.record);
+        let mut estimate = Estimate { query, scatter, throughput, path: path.pixel, places: 1, ray, offset };
         if path.depth == 1 {
             self.add_companions(path, tile, &mut estimate, &mut estimates.companions);
         }

@@ -128,9 +128,9 @@ impl FilmLayout {
         self.weight
     }
 
-    /// Whether a channel holds sums over samples, and not a value of a pass.
+    /// Whether a channel holds weighted sums, and not a label.
     pub(crate) fn is_sum(&self, channel: usize) -> bool {
-        [Aov::Variance, Aov::ObjectId, Aov::MaterialId].into_iter().all(|aov| self.offset(aov) != Some(channel))
+        [Aov::ObjectId, Aov::MaterialId].into_iter().all(|aov| self.offset(aov) != Some(channel))
     }
 
     /// Channels of a pixel.

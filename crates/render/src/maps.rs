@@ -40,6 +40,8 @@ pub(crate) struct Estimate {
     pub places: u32,
     /// Record of the ray that asks.
     pub ray: u32,
+    /// How far the surface may be off the place asked about, by rounding; scene units.
+    pub offset: f32,
 }
 
 /// How the light of photons is scattered to where an estimate is asked for.

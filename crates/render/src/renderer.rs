@@ -289,6 +289,9 @@ impl<'w> Renderer<'w> {
                 Ok(())
             }
             Err(cancelled) => {
+                if let Some(pixels) = &mut self.cut_pixels {
+                    pixels.forget();
+                }
                 if self.film.passes() == 0 {
                     self.partial = Some(buffer);
                 }

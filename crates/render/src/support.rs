@@ -73,6 +73,11 @@ impl CutPixels {
         self.is_known = true;
     }
 
+    /// Forgets what an unfinished pass saw: the next one begins as that did.
+    pub fn forget(&mut self) {
+        self.now.iter_mut().for_each(|now| *now.get_mut() = false);
+    }
+
     /// Whether the pass before saw a disc cut here or next to here, as samples of a pixel fall anywhere in it.
     fn were_cut(&self, place: [u32; 2]) -> bool {
         self.around(place).any(|i| self.before[i])
@@ -118,6 +123,10 @@ struct Point {
     depth_sq: f32,
     /// How far above the surface rays run.
     height: f32,
+    /// Heights that differ by less do so by rounding.
+    offset: f32,
+    /// Numbers for surfaces that let a part of the light through.
+    draws: Sampler,
 }
 
 /// Looks at the discs of a batch of estimates.
@@ -198,7 +207,9 @@ impl Looker<'_> {
                 estimate,
                 position: e.query.position + (frame.s * cos + frame.t * sin) * distance,
                 depth_sq: (radius * radius * (1.0 - s)).max(0.0),
-                height: radius * HEIGHT,
+                height: (radius * HEIGHT).max(e.offset),
+                offset: e.offset,
+                draws: Sampler::new(self.seed, StreamKind::Support, stream | u64::from(i + 1) << 60, self.sample),
             });
         }
     }
@@ -244,7 +255,7 @@ impl Looker<'_> {
         });
         self.trace(free, down, estimates, tracer, counters, |point, ray, hit| {
             let cos = hit.map_or(0.0, |(normal, _)| facing(normal, ray).dot(query(&point).normal));
-            let drop = hit.map_or(0.0, |(_, t)| t - point.height);
+            let drop = hit.map_or(0.0, |(_, t)| ((t - point.height).abs() - point.offset).max(0.0));
             let share = if cos >= LEAST_COSINE { self.weight(&point, drop) / cos } else { 0.0 };
             if (share - 1.0).abs() > ROUNDING {
                 lost.push((point.estimate, 1.0 - share));
@@ -264,7 +275,7 @@ impl Looker<'_> {
     /// Traces a ray for each point and hands the normal where it hits, towards the outside, and the ray's parameter to `take` where it hits.
     fn trace(
         &self,
-        points: Vec<Point>,
+        mut points: Vec<Point>,
         ray: impl Fn(&Point) -> Ray,
         estimates: &[Estimate],
         tracer: &mut Tracer,
@@ -275,7 +286,7 @@ impl Looker<'_> {
         let mut hits: Vec<Hit> = Vec::new();
         counters.rays.support += rays.len() as u64;
         tracer.ask(points.iter().map(|point| (RayKind::Support, estimates[point.estimate].ray)));
-        tracer.closest(&rays, &mut hits, counters, |_| 0.5);
+        tracer.closest(&rays, &mut hits, counters, |i| points[i].draws.next_1d());
         for ((point, ray), hit) in points.into_iter().zip(&rays).zip(&hits) {
             let normal = hit.is_hit().then(|| (self.world.outward_normal(ray, hit), hit.t));
             take(point, ray, normal);

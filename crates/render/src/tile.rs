@@ -288,8 +288,9 @@ impl Tiles<'_> {
         if let (Some(offset), Some(weight)) = (self.layout.offset(Aov::Variance), self.layout.weight()) {
             for pixel in film.chunks_exact_mut(channels) {
                 let luminance = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
-                let mean = luminance / pixel[weight].max(f32::MIN_POSITIVE);
-                pixel[offset] = mean * mean;
+                // The square of the pass's mean, times its weight: the spread of weighted means around the weighted mean is
+                // never negative.
+                pixel[offset] = luminance * (luminance / pixel[weight].max(f32::MIN_POSITIVE));
             }
         }
         if complete { Ok(counters) } else { Err(Cancelled) }

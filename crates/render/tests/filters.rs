@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use photinus_geometry::Vec3;
-use photinus_render::{Aov, Mode, Settings};
+use photinus_render::{Aov, Mode, Renderer, Settings, Silent};
 use photinus_scene::{Filter, Scene};
 
 const SHARED: [Filter; 2] = [Filter::Tent { radius: 1.0 }, Filter::Gaussian { stddev: 0.5 }];
@@ -72,9 +72,9 @@ fn labels_are_not_mixed() {
     let world = world(scene);
     let settings =
         Settings { mode: Mode::Progressive, photons: Some(1000), aovs: Aov::ALL.to_vec(), ..Settings::default() };
-    let mut renderer = photinus_render::Renderer::new(&world, settings, &photinus_render::Silent).expect("it starts");
+    let mut renderer = Renderer::new(&world, settings, &Silent).expect("it starts");
     for _ in 0..3 {
-        renderer.render_pass(&photinus_render::Silent).expect("nothing stops it");
+        renderer.render_pass(&Silent).expect("nothing stops it");
     }
     let (layout, pixels) = (renderer.layout().clone(), renderer.pixels());
     let at = |aov: Aov| layout.offset(aov).expect("all are there");
@@ -86,5 +86,36 @@ fn labels_are_not_mixed() {
         assert!((0.0..0.3).contains(&variance), "{variance}");
         let dark_or_bright = pixel[0] < 1e-6 || pixel[0] > 1.0 - 1e-5;
         assert!(!dark_or_bright || variance < 1e-5, "{} {variance}", pixel[0]);
+    }
+}
+
+/// The variance that is told against the squared differences of renders with other seeds. Squares of passes that do not
+/// count by the weights of their samples, as their mean does, tell three times as much.
+#[test]
+fn variance_is_that_of_the_picture() {
+    for filter in [Filter::Box, SHARED[0], SHARED[1]] {
+        let mut scene = scene(camera(Vec3::ZERO, Vec3::Z, 90.0), 32);
+        let grey = scene.material(diffuse(0.5));
+        scene.sphere(Vec3::ZERO, 1.0, true, grey, Some(0.25));
+        scene.film.filter = filter;
+        let world = world(scene);
+        let picture = |seed| {
+            let settings = Settings { photons: Some(5000), seed, track_error: true, ..Settings::default() };
+            let mut renderer = Renderer::new(&world, settings, &Silent).expect("it starts");
+            (0..6).for_each(|_| renderer.render_pass(&Silent).expect("nothing stops it"));
+            let (channels, variance) = (renderer.layout().channels(), renderer.layout().offset(Aov::Variance));
+            let variance = variance.expect("it is tracked");
+            // All three channels are equal.
+            renderer.pixels().chunks_exact(channels).map(|p| [p[0], p[variance]].map(f64::from)).collect::<Vec<_>>()
+        };
+        let (mut told, mut found) = (0.0, 0.0);
+        for seed in 0..12 {
+            for ([a, of_a], [b, of_b]) in picture(2 * seed).into_iter().zip(picture(2 * seed + 1)) {
+                told += of_a + of_b;
+                found += (a - b) * (a - b);
+            }
+        }
+        println!("{filter:?}: {:.3}", told / found);
+        assert!((0.7..2.0).contains(&(told / found)), "{filter:?}: {told} for {found}");
     }
 }
