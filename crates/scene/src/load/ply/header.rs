@@ -125,7 +125,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Fault> {
                 let Some(count) = count else {
                     return Err(Fault::new(line, format!("element {}: the count is not a number", quoted(element))));
                 };
-                elements.push(Element { name: name(element), count, properties: Vec::new() });
+                let element = name(element);
+                // Two lists of vertices could have different attributes, and indices would have two meanings.
+                if elements.iter().any(|e| e.name == element) {
+                    return Err(Fault::new(line, format!("element {} is declared twice", quoted(element.as_bytes()))));
+                }
+                elements.push(Element { name: element, count, properties: Vec::new() });
             }
             [b"property", rest @ ..] => {
                 let Some(element) = elements.last_mut() else {
@@ -211,6 +216,7 @@ mod tests {
             ("ply\nformat utf8 1.0\n", "unknown format \"utf8\""),
             ("ply\nelement vertex -3\n", "count"),
             ("ply\nelement vertex 99999999999999999999\n", "count"),
+            ("ply\nelement vertex 1\nproperty float x\nelement vertex 1\n", "element \"vertex\" is declared twice"),
             ("ply\nproperty float x\n", "before the first element"),
             ("ply\nelement v 1\nproperty real x\n", "unknown property type \"real\""),
             ("ply\nelement v 1\nproperty list float int x\n", "integer"),

@@ -185,3 +185,31 @@ fn what_is_broken_is_said() {
         assert!(from_bytes(&encode("ascii", header, &[&[U8(1), U8(2)]])).unwrap_err().message.contains(what));
     }
 }
+
+#[test]
+fn an_element_declared_twice_is_refused() {
+    const FACE: &str = "property list uchar int vertex_indices\n";
+    const COLOR: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let place = CORNERS.replace("element vertex 4\n", "");
+    let c = corners();
+    let color = [U8(255), U8(0), U8(0)];
+    let face = [U8(3), I32(0), I32(1), I32(2)];
+    for format in FORMATS {
+        // Four vertices with colours, one face, and four vertices without: eight places, four colours.
+        let header = format!("element vertex 4\n{place}{COLOR}element face 1\n{FACE}element vertex 4\n{place}");
+        let mut rows: Vec<&[Value]> = c.iter().flat_map(|c| [c.as_slice(), &color]).collect();
+        rows.push(&face);
+        let read_once = encode(format, header.rsplit_once("element").unwrap().0, &rows);
+        assert_eq!(read(&read_once).0.colors.len(), 4);
+        rows.extend(c.iter().map(<[_; 3]>::as_slice));
+        let fault = from_bytes(&encode(format, &header, &rows)).unwrap_err();
+        assert!(fault.message.contains("element \"vertex\" is declared twice"), "{format}: {fault:?}");
+        assert_eq!(fault.line, 13, "the line of the second declaration");
+
+        // The second face's colour would be the first one's.
+        let header = format!("{CORNERS}element face 1\n{FACE}element face 1\n{FACE}{COLOR}");
+        let rows: [&[Value]; 7] = [&c[0], &c[1], &c[2], &c[3], &face, &face, &color];
+        let fault = from_bytes(&encode(format, &header, &rows)).unwrap_err();
+        assert!(fault.message.contains("element \"face\" is declared twice"), "{format}: {fault:?}");
+    }
+}
