@@ -146,6 +146,7 @@ impl EyePass<'_> {
                     normal: point.geometric_normal * side,
                     max_depth: 127,
                 },
+                side,
                 scatter,
                 throughput: node.throughput,
                 path: node.pixel,

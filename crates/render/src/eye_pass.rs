@@ -402,7 +402,7 @@ impl EyePass<'_> {
             max_depth: (self.max_depth - path.depth).min(127),
         };
         let (throughput, offset, ray) = (path.throughput, point.offset, path.record);
-        let mut estimate = Estimate { query, scatter, throughput, path: path.pixel, places: 1, ray, offset };
+        let mut estimate = Estimate { query, side, scatter, throughput, path: path.pixel, places: 1, ray, offset };
         if path.depth == 1 {
             self.add_companions(path, tile, &mut estimate, &mut estimates.companions);
         }

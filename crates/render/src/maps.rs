@@ -32,6 +32,8 @@ pub(crate) struct Maps {
 #[derive(Clone, Copy)]
 pub(crate) struct Estimate {
     pub query: GatherQuery,
+    /// 1 on the outside of its surface, -1 behind it.
+    pub side: f32,
     pub scatter: Scatter,
     pub throughput: Vec3,
     /// The path it belongs to.

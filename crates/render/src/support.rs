@@ -17,11 +17,14 @@ use photinus_geometry::{Frame, Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::Kernel;
 use photinus_profile::queries::RayKind;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Points of the disc of an estimate that is all there is in its pixel, and of one that hardly counts.
 const MOST_POINTS: f32 = 8.0;
 const FEWEST_POINTS: f32 = 3.0;
+/// So many times as many where something is missing.
+const MORE_POINTS: u32 = 3;
 /// How many points of an estimate's disc are worth looking at where it is this part, 0 to 1, of the light of its pixel.
 pub(crate) fn points_for(part: f32) -> u32 {
     if part > 0.0 { (MOST_POINTS * part).ceil().clamp(FEWEST_POINTS, MOST_POINTS) as u32 } else { 0 }
@@ -40,8 +43,13 @@ const COARSE: u32 = 2;
 const HEIGHT: f32 = 0.03;
 /// Least share: a corner of three walls leaves a quarter, and a few points may miss it.
 const LEAST_SHARE: f32 = 0.125;
-/// Most: a surface that bends has more of it within the radius than a plane.
-const MOST_SHARE: f32 = 2.0;
+/// Most. Surfaces are counted from either side, as it is not known which of them are open: a plate thinner than the radius has
+/// more than a plane, and keeps its brightness.
+const MOST_SHARE: f32 = 1.0;
+/// Surfaces that a line through a disc meets at most.
+const MOST_LAYERS: usize = 6;
+/// Step from one to the next, in heights.
+const STEP: f32 = 0.01;
 /// Differences from a plane that are none.
 const ROUNDING: f32 = 1e-3;
 /// Least cosine between normals of photons and query, as searches have it.
@@ -119,14 +127,26 @@ pub(crate) struct Look {
 struct Point {
     estimate: usize,
     position: Vec3,
-    /// How far below it a photon may lie and be found, squared.
+    /// How far above or below it a photon may lie and be found, squared.
     depth_sq: f32,
-    /// How far above the surface rays run.
+    /// How far above the surface rays run along it.
     height: f32,
     /// Heights that differ by less do so by rounding.
     offset: f32,
     /// Numbers for surfaces that let a part of the light through.
     draws: Sampler,
+    /// Something stands there.
+    is_covered: bool,
+    /// How far below the point the line through it has been followed.
+    at: f32,
+    /// What the line has met so far, over what it would meet on a plane.
+    share: f32,
+}
+
+impl Point {
+    fn depth(&self) -> f32 {
+        self.depth_sq.sqrt().max(self.height)
+    }
 }
 
 /// Looks at the discs of a batch of estimates.
@@ -176,25 +196,43 @@ impl Looker<'_> {
         tracer: &mut Tracer,
         counters: &mut Counters,
     ) {
-        let mut points = Vec::new();
-        for (i, e) in estimates.iter().enumerate().filter(|(_, e)| is_wanted(pixel(e.path))) {
-            self.add_points(i, e, looks[i], pixel(e.path), &mut points);
-        }
-        for (i, lost) in self.lost(estimates, points, tracer, counters) {
-            shares[i] -= lost * part(looks[i].count);
-            if lost == 1.0 {
-                self.pixels.saw_cut(pixel(estimates[i].path));
+        let mut losses = vec![0.0; estimates.len()];
+        let mut counts = vec![0; estimates.len()];
+        // Where something is missing, more points tell how much.
+        for stage in [1, MORE_POINTS] {
+            let mut points = Vec::new();
+            for (i, e) in estimates.iter().enumerate() {
+                if is_wanted(pixel(e.path)) && (stage == 1 || losses[i] > 0.0) {
+                    let all = looks[i].count * stage;
+                    self.add_points(i, e, looks[i].radius, counts[i]..all, pixel(e.path), &mut points);
+                    counts[i] = all;
+                }
+            }
+            for (i, lost) in self.lost(estimates, points, tracer, counters) {
+                losses[i] += lost;
+                if lost == 1.0 {
+                    self.pixels.saw_cut(pixel(estimates[i].path));
+                }
             }
         }
-        shares.iter_mut().for_each(|share| *share = share.clamp(LEAST_SHARE, MOST_SHARE));
+        for ((share, lost), count) in shares.iter_mut().zip(losses).zip(counts).filter(|(_, count)| *count > 0) {
+            *share = (1.0 - lost * part(count)).clamp(LEAST_SHARE, MOST_SHARE);
+        }
     }
 
-    fn add_points(&self, estimate: usize, e: &Estimate, look: Look, [x, y]: [u32; 2], points: &mut Vec<Point>) {
-        let Look { radius, count } = look;
+    fn add_points(
+        &self,
+        estimate: usize,
+        e: &Estimate,
+        radius: f32,
+        range: Range<u32>,
+        [x, y]: [u32; 2],
+        points: &mut Vec<Point>,
+    ) {
         let frame = Frame::from_normal(e.query.normal);
         let stream = u64::from(self.origin[1] + y) << 32 | u64::from(self.origin[0] + x);
         let shift = Sampler::new(self.seed, StreamKind::Support, stream, self.sample).next_2d();
-        for i in 0..count {
+        for i in range {
             // Steps of the plastic number's powers fill the square evenly (Roberts 2018, the R2 sequence).
             let step = |u: f32, by: f32| (u + i as f32 * by).fract();
             let [u, v] = [step(shift[0], 0.754_877_7), step(shift[1], 0.569_840_3)];
@@ -203,14 +241,19 @@ impl Looker<'_> {
             let s = if self.kernel == Kernel::Epanechnikov { 1.0 - (1.0 - u).sqrt() } else { u };
             let (sin, cos) = libm::sincosf(std::f32::consts::TAU * v);
             let distance = radius * s.sqrt();
-            points.push(Point {
+            let mut point = Point {
                 estimate,
                 position: e.query.position + (frame.s * cos + frame.t * sin) * distance,
                 depth_sq: (radius * radius * (1.0 - s)).max(0.0),
                 height: (radius * HEIGHT).max(e.offset),
                 offset: e.offset,
-                draws: Sampler::new(self.seed, StreamKind::Support, stream | u64::from(i + 1) << 60, self.sample),
-            });
+                draws: Sampler::new(self.seed, StreamKind::Support, stream | u64::from(i + 1) << 52, self.sample),
+                is_covered: false,
+                at: 0.0,
+                share: 0.0,
+            };
+            point.at = -point.depth();
+            points.push(point);
         }
     }
 
@@ -234,34 +277,47 @@ impl Looker<'_> {
             Ray { t_max: 1.0, ..Ray::new(origin, query(point).position - point.position) }
         };
         let down = |point: &Point| {
-            let origin = point.position + above(point);
-            Ray {
-                t_max: point.height + point.depth_sq.sqrt().max(point.height),
-                ..Ray::new(origin, -query(point).normal)
-            }
+            // What lies below a body is covered by it.
+            let end = if point.is_covered { -point.height } else { point.depth() };
+            let origin = point.position - query(point).normal * point.at;
+            Ray { t_max: end - point.at, ..Ray::new(origin, -query(point).normal) }
         };
-        let mut lost = Vec::new();
-        // Along the surface: the way is free, or a surface that is found rises into it, or something stands there.
-        let (mut free, mut blocked) = (Vec::new(), Vec::new());
-        self.trace(points, along, estimates, tracer, counters, |point, ray, hit| match hit {
-            None => free.push(point),
-            Some((normal, _)) if facing(normal, ray).dot(query(&point).normal) >= LEAST_COSINE => (),
+        let outward = |point: &Point, normal: Vec3| normal * estimates[point.estimate].side;
+        // Along the surface: the way is free, or something stands there.
+        let (mut lines, mut blocked) = (Vec::new(), Vec::new());
+        self.trace(points, along, estimates, tracer, counters, |point, _, hit| match hit {
+            None => lines.push(point),
             Some(_) => blocked.push(point),
         });
-        // Back from behind what stands there: a thin thing has a free side, inside a body or behind a wall there is none.
-        self.trace(blocked, back, estimates, tracer, counters, |point, ray, hit| match hit {
-            Some((normal, _)) if normal.dot(ray.dir) > 0.0 => lost.push((point.estimate, 1.0)),
-            _ => free.push(point),
+        // Back from behind what stands there: a thin thing has a free side, the inside of a body none.
+        self.trace(blocked, back, estimates, tracer, counters, |mut point, ray, hit| {
+            point.is_covered = hit.is_some_and(|(normal, _)| outward(&point, normal).dot(ray.dir) > 0.0);
+            lines.push(point);
         });
-        self.trace(free, down, estimates, tracer, counters, |point, ray, hit| {
-            let cos = hit.map_or(0.0, |(normal, _)| facing(normal, ray).dot(query(&point).normal));
-            let drop = hit.map_or(0.0, |(_, t)| ((t - point.height).abs() - point.offset).max(0.0));
-            let share = if cos >= LEAST_COSINE { self.weight(&point, drop) / cos } else { 0.0 };
-            if (share - 1.0).abs() > ROUNDING {
-                lost.push((point.estimate, 1.0 - share));
+        let mut ended = Vec::new();
+        for _ in 0..MOST_LAYERS {
+            let mut next = Vec::new();
+            self.trace(lines, down, estimates, tracer, counters, |mut point, _, hit| {
+                let Some((normal, t)) = hit else {
+                    ended.push(point);
+                    return;
+                };
+                let at = point.at + t;
+                let cos = normal.dot(query(&point).normal).abs();
+                if cos >= LEAST_COSINE {
+                    point.share += self.weight(&point, (at.abs() - point.offset).max(0.0)) / cos;
+                }
+                point.at = at + STEP * point.height + point.offset;
+                next.push(point);
+            });
+            lines = next;
+            if lines.is_empty() {
+                break;
             }
-        });
-        lost
+        }
+        ended.extend(lines);
+        let is_other = |point: &Point| (point.share - 1.0).abs() > ROUNDING;
+        ended.into_iter().filter(is_other).map(|point| (point.estimate, 1.0 - point.share)).collect()
     }
 
     /// The weight of a photon that lies so far below a point, over that of one at the point itself.
@@ -292,9 +348,4 @@ impl Looker<'_> {
             take(point, ray, normal);
         }
     }
-}
-
-/// A normal turned against a ray.
-fn facing(normal: Vec3, ray: &Ray) -> Vec3 {
-    if normal.dot(ray.dir) > 0.0 { -normal } else { normal }
 }
