@@ -104,6 +104,7 @@ fn what_is_cut_or_damaged_is_refused() {
         (0..file.block_count()).try_for_each(|i| file.read(i).map(drop))
     };
     assert!(damaged(64, 1).is_ok(), "a coordinate may be anything");
+    let rays = 4 * RayKind::ALL.len();
     for (at, value, what) in [
         (0, b'X', "magic"),
         (32 + 4, 9, "stage"),
@@ -111,10 +112,10 @@ fn what_is_cut_or_damaged_is_refused() {
         (32 + 24, 99, "kind of ray"),
         (32 + 25, 9, "answer of a ray"),
         (32 + 24 + 56 + 4, 200, "a parent that comes later"),
-        (32 + 24 + 56 * 20, 7, "map"),
-        (32 + 24 + 56 * 20 + 1, 7, "kernel"),
-        (32 + 24 + 56 * 20 + 2, 7, "answer of a search"),
-        (32 + 24 + 56 * 20 + 4, 200, "a search's parent that is none"),
+        (32 + 24 + 56 * rays, 7, "map"),
+        (32 + 24 + 56 * rays + 1, 7, "kernel"),
+        (32 + 24 + 56 * rays + 2, 7, "answer of a search"),
+        (32 + 24 + 56 * rays + 4, 200, "a search's parent that is none"),
     ] {
         assert!(damaged(at, value).is_err(), "{what}");
     }
