@@ -6,8 +6,8 @@
 //! proportion to the kernel, tell the share that is there (the boundary correction of kernel density estimates: Jones,
 //! "Simple boundary correction for kernel density estimation", Statistics and Computing 3, 1993).
 //!
-//! Looking costs rays, so it is done everywhere in the first pass, and later only around pixels where the pass before saw
-//! a disc cut: radii do not grow.
+//! Looking costs rays, so the first pass looks at one pixel in four, and at its neighbours where a disc is cut; later passes look
+//! around pixels where the pass before saw a disc cut: radii do not grow.
 
 use crate::counters::Counters;
 use crate::maps::Estimate;
