@@ -2,7 +2,7 @@
 //! the rest (thesis, Figure 3: FireViewerRay, CalculateRayColour).
 
 use crate::SurfacePoint;
-use crate::bsdf::{Bsdf, LobeSet, TransportMode};
+use crate::bsdf::{Bsdf, BsdfSample, LobeSet, TransportMode};
 use crate::camera::CameraModel;
 use crate::companions::SHIFTS;
 use crate::control::{Cancelled, Observer};
@@ -26,7 +26,7 @@ use photinus_profile::queries::{BlockKey, RayKind, Stage};
 pub(crate) const TILE: u32 = 32;
 
 /// Steps of points that fill the square evenly: powers of the plastic number's inverse (Roberts 2018, the R2 sequence).
-const R2: [f32; 2] = [0.754_877_7, 0.569_840_3];
+pub(crate) const R2: [f32; 2] = [0.754_877_7, 0.569_840_3];
 /// Rays along a rough mirror-like lobe that the camera sees, where light may be anywhere.
 const LOOKS: u32 = 4;
 
@@ -96,6 +96,19 @@ impl Path {
             (true, _) => RayKind::Gather,
             (false, 0) => RayKind::Camera,
             (false, _) => RayKind::Specular,
+        }
+    }
+
+    /// One of `looks` rays that go on from a point to see lights only.
+    fn probe(&self, point: &SurfacePoint, s: &BsdfSample, looks: u32) -> Self {
+        Self {
+            ray: Ray::new(point.ray_origin(s.wi), s.wi),
+            throughput: self.throughput * s.weight,
+            last_pdf: s.pdf,
+            last_position: point.position,
+            last_looks: looks as f32,
+            probe: true,
+            ..self.clone()
         }
     }
 
@@ -412,16 +425,7 @@ impl EyePass<'_> {
         }
         let (choice, u) = (path.sampler.next_1d(), path.sampler.next_2d());
         if let Some(s) = bsdf.sample(LobeSet::GATHER, choice, u, TransportMode::Radiance) {
-            next.push(Path {
-                ray: Ray::new(point.ray_origin(s.wi), s.wi),
-                throughput: path.throughput * s.weight,
-                sampler: path.sampler.clone(),
-                last_pdf: s.pdf,
-                last_position: point.position,
-                last_looks: 1.0,
-                probe: true,
-                ..*path
-            });
+            next.push(path.probe(point, &s, 1));
         }
     }
 
@@ -449,16 +453,7 @@ impl EyePass<'_> {
             let u = [(u[0] + i as f32 * R2[0]).fract(), (u[1] + i as f32 * R2[1]).fract()];
             let choice = (choice + i as f32 / looks as f32).fract();
             let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { continue };
-            next.push(Path {
-                ray: Ray::new(point.ray_origin(s.wi), s.wi),
-                throughput: path.throughput * s.weight,
-                sampler: path.sampler.clone(),
-                last_pdf: s.pdf,
-                last_position: point.position,
-                last_looks: looks as f32,
-                probe: true,
-                ..path
-            });
+            next.push(path.probe(point, &s, looks));
         }
         path.last_looks = looks as f32;
         let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { return };

@@ -10,6 +10,7 @@
 //! around pixels where the pass before saw a disc cut: radii do not grow.
 
 use crate::counters::Counters;
+use crate::eye_pass::R2;
 use crate::maps::Estimate;
 use crate::trace::Tracer;
 use crate::world::World;
@@ -233,9 +234,8 @@ impl Looker<'_> {
         let stream = u64::from(self.origin[1] + y) << 32 | u64::from(self.origin[0] + x);
         let shift = Sampler::new(self.seed, StreamKind::Support, stream, self.sample).next_2d();
         for i in range {
-            // Steps of the plastic number's powers fill the square evenly (Roberts 2018, the R2 sequence).
             let step = |u: f32, by: f32| (u + i as f32 * by).fract();
-            let [u, v] = [step(shift[0], 0.754_877_7), step(shift[1], 0.569_840_3)];
+            let [u, v] = [step(shift[0], R2[0]), step(shift[1], R2[1])];
             // The part of the kernel's integral within a distance d: d^2 / r^2 for the constant one, 2 s - s^2 of that for
             // Epanechnikov's.
             let s = if self.kernel == Kernel::Epanechnikov { 1.0 - (1.0 - u).sqrt() } else { u };

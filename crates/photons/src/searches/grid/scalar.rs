@@ -95,7 +95,7 @@ fn select(blocks: &[Block], hits: &[u32], query: &PreparedQuery, _: &mut NormalM
 }
 
 /// Halves folded onto one another: lane i + lane i + 8, then 4, 2, 1.
-fn tree_sum(mut lanes: [f32; LANES]) -> f32 {
+pub(super) fn tree_sum(mut lanes: [f32; LANES]) -> f32 {
     let mut half = LANES / 2;
     while half > 0 {
         for i in 0..half {

@@ -12,6 +12,7 @@ pub(crate) mod avx512;
 use super::blocks::{Block, LANES};
 use super::kernels::SharedKernels;
 use super::kth::kth_least;
+use super::scalar::tree_sum;
 use crate::Gathered;
 use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
 use crate::inclusion::PreparedQuery;
@@ -160,17 +161,7 @@ fn gather(shared: &Shared, query: &PreparedQuery) -> Gathered {
             count += 1;
         }
     }
-    let tree = |mut lanes: Lanes| {
-        let mut half = LANES / 2;
-        while half > 0 {
-            for i in 0..half {
-                lanes[i] += lanes[i + half];
-            }
-            half /= 2;
-        }
-        lanes[0]
-    };
-    Gathered { flux: Vec3::from_array(flux.map(tree)) * PLACED_UNITS, count }
+    Gathered { flux: Vec3::from_array(flux.map(tree_sum)) * PLACED_UNITS, count }
 }
 
 impl Shared {
