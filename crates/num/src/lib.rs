@@ -9,6 +9,7 @@ mod philox;
 mod sampler;
 mod scalar;
 mod sobol;
+mod splitmix;
 
 pub use counted::{Counted, OpCounts};
 pub use philox::philox4x32;

@@ -1,7 +1,7 @@
 //! The stream of random numbers of one path: a function of seed, kind, stream and index.
 
-use crate::philox::philox4x32;
 use crate::sobol::sobol_owen4;
+use crate::splitmix::{GAMMA, mix64};
 
 /// What a stream of random numbers is for. Streams of different kinds are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub enum StreamKind {
 }
 
 /// Dimensions beyond this many draw plain random numbers: long paths gain nothing from stratification.
-const STRATIFIED_BLOCKS: u32 = 8;
+const STRATIFIED_GROUPS: u64 = 8;
 
 /// Random numbers of one path, each in `[0, 1)`.
 ///
@@ -37,63 +37,63 @@ const STRATIFIED_BLOCKS: u32 = 8;
 /// (Owen-scrambled Sobol points); groups are decorrelated from one another by independent shuffles.
 #[derive(Clone, Debug)]
 pub struct Sampler {
-    key: [u32; 2],
-    stream: [u32; 2],
-    index: u32,
-    block: u32,
-    buffer: [u32; 4],
-    used: u32,
+    /// Hash of seed, kind and stream.
+    stream: u64,
+    /// Bits of the index in reverse.
+    reversed_index: u32,
+    /// Numbers drawn or skipped; a multiple of four: the next group is still to be made.
+    drawn: u32,
+    group: [f32; 4],
 }
 
 impl Sampler {
     /// The numbers of sample `index` in `stream`. Equal arguments give equal numbers on any machine.
     #[inline]
     pub fn new(seed: u64, kind: StreamKind, stream: u64, index: u32) -> Self {
-        let kind = (kind as u32).wrapping_mul(0x9E37_79B9);
+        let family = mix64(seed.wrapping_add(GAMMA.wrapping_mul(kind as u64)));
         Self {
-            key: [seed as u32 ^ kind, (seed >> 32) as u32],
-            stream: [stream as u32, (stream >> 32) as u32],
-            index,
-            block: 0,
-            buffer: [0; 4],
-            used: 4,
+            stream: mix64(family.wrapping_add(GAMMA.wrapping_mul(stream))),
+            reversed_index: index.reverse_bits(),
+            drawn: 0,
+            group: [0.0; 4],
         }
     }
 
-    #[inline]
     fn refill(&mut self) {
-        self.buffer = if self.block < STRATIFIED_BLOCKS {
-            // One word of the hash seeds each dimension; the shuffle takes its own mix of them.
-            let h = philox4x32([self.stream[0], self.stream[1], self.block, 0x5EED], self.key);
-            let shuffle = h[0].rotate_left(16) ^ h[1].wrapping_mul(0x85EB_CA6B) ^ h[2].rotate_left(7) ^ h[3];
-            sobol_owen4(self.index, shuffle, h)
+        let group = u64::from(self.drawn / 4);
+        let words = if group < STRATIFIED_GROUPS {
+            // A word of the hash for each dimension, and one for the shuffle.
+            let first = self.stream.wrapping_add(GAMMA.wrapping_mul(3 * group));
+            sobol_owen4(self.reversed_index, mix64(first) as u32, words(first))
         } else {
-            philox4x32([self.stream[0], self.stream[1], self.block, self.index], self.key)
+            words(mix64(self.stream ^ u64::from(self.reversed_index) << 32 ^ group))
         };
-        self.block += 1;
-        self.used = 0;
+        self.group = words.map(unit_f32);
     }
 
     /// The next number, uniform in `[0, 1)`.
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        if self.used >= 4 {
+        let i = self.drawn as usize % 4;
+        if i == 0 {
             self.refill();
         }
-        let word = self.buffer[self.used as usize];
-        self.used += 1;
-        unit_f32(word)
+        self.drawn += 1;
+        self.group[i]
     }
 
     /// The next two numbers, jointly stratified over the indices of the stream.
     #[inline]
     pub fn next_2d(&mut self) -> [f32; 2] {
-        if self.used >= 3 {
+        if self.drawn % 4 == 3 {
+            self.drawn += 1;
+        }
+        let i = self.drawn as usize % 4;
+        if i == 0 {
             self.refill();
         }
-        let i = self.used as usize;
-        self.used += 2;
-        [unit_f32(self.buffer[i]), unit_f32(self.buffer[i + 1])]
+        self.drawn += 2;
+        [self.group[i], self.group[i + 1]]
     }
 
     /// Skips what is left of the current group of four, so that the next draws start a fresh one.
@@ -101,8 +101,16 @@ impl Sampler {
     /// A path calls it once a vertex: a vertex that needs fewer numbers then does not shift those of the next.
     #[inline]
     pub fn start_vertex(&mut self) {
-        self.used = 4;
+        self.drawn = self.drawn.next_multiple_of(4);
     }
+}
+
+/// The next four words of the sequence at `state`.
+#[inline]
+fn words(state: u64) -> [u32; 4] {
+    let a = mix64(state.wrapping_add(GAMMA));
+    let b = mix64(state.wrapping_add(GAMMA.wrapping_mul(2)));
+    [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32]
 }
 
 /// A random word as a number in `[0, 1)` with 24 bits.

@@ -1,7 +1,8 @@
 //! Owen-scrambled Sobol points in four dimensions (Burley, "Practical hash-based Owen scrambling", JCGT 9(4), 2020).
 
-/// Direction words of the first four Sobol dimensions, combined a byte of the index at a time: entry `[b][v]` is the
-/// exclusive or of the direction words of the bits set in byte `b` of value `v`, one word a dimension.
+/// Direction words of the first four Sobol dimensions, combined a byte of the index at a time, all bits of words and index
+/// in reverse: entry `[b][v]` is the exclusive or of the direction words of the bits set in byte `b`, of value `v`, of the
+/// reversed index; one word a dimension.
 static TABLE: [[[u32; 4]; 256]; 4] = table();
 
 /// Direction words of dimension `d` (Joe and Kuo 2008: degree, polynomial and first numbers).
@@ -50,7 +51,7 @@ const fn table() -> [[[u32; 4]; 256]; 4] {
                 let mut bit = 0;
                 while bit < 8 {
                     if (value >> bit) & 1 == 1 {
-                        x ^= v[8 * byte + bit];
+                        x ^= v[31 - (8 * byte + bit)].reverse_bits();
                     }
                     bit += 1;
                 }
@@ -64,37 +65,31 @@ const fn table() -> [[[u32; 4]; 256]; 4] {
     out
 }
 
-/// Point `index` of the four-dimensional Sobol sequence, as 32-bit fractions.
+/// The point of the four-dimensional Sobol sequence whose index has the bits of `index` in reverse, itself reversed.
 #[inline]
-fn sobol4(index: u32) -> [u32; 4] {
+fn sobol4_reversed(index: u32) -> [u32; 4] {
     let [a, b, c, d] = index.to_le_bytes();
-    let (a, b, c, d) = (TABLE[0][a as usize], TABLE[1][b as usize], TABLE[2][c as usize], TABLE[3][d as usize]);
+    let (a, b, c, d) = (&TABLE[0][a as usize], &TABLE[1][b as usize], &TABLE[2][c as usize], &TABLE[3][d as usize]);
     std::array::from_fn(|i| a[i] ^ b[i] ^ c[i] ^ d[i])
 }
 
-/// Nested uniform scramble of a bit-reversed word: each bit is flipped by a hash of the bits below it
-/// (the constants of Burley's section 4, after Laine and Karras 2011).
+/// Nested uniform scrambles of bit-reversed words: each bit is flipped by a hash of the bits below it (the constants of
+/// Burley's section 4, after Laine and Karras 2011). Step by step over all words, which makes one vector of them.
 #[inline]
-fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
-    x = x.wrapping_add(seed);
-    x ^= x.wrapping_mul(0x6c50_b47c);
-    x ^= x.wrapping_mul(0xb82f_1e52);
-    x ^= x.wrapping_mul(0xc7af_e638);
-    x ^= x.wrapping_mul(0x8d22_f6e6);
+fn scramble_reversed<const N: usize>(mut x: [u32; N], seeds: [u32; N]) -> [u32; N] {
+    x = std::array::from_fn(|d| x[d].wrapping_add(seeds[d]));
+    for factor in [0x6c50_b47c, 0xb82f_1e52, 0xc7af_e638, 0x8d22_f6e6u32] {
+        x = std::array::from_fn(|d| x[d] ^ x[d].wrapping_mul(factor));
+    }
     x
 }
 
+/// A point of an independently shuffled and Owen-scrambled sequence for each choice of `shuffle` and `seeds`, as 32-bit
+/// fractions. `reversed_index` has the bits of the point's index in reverse.
 #[inline]
-fn owen_scramble(x: u32, seed: u32) -> u32 {
-    scramble_reversed(x.reverse_bits(), seed).reverse_bits()
-}
-
-/// Point `index` of an independently shuffled and Owen-scrambled sequence for each `seed`.
-#[inline]
-pub(crate) fn sobol_owen4(index: u32, shuffle: u32, seeds: [u32; 4]) -> [u32; 4] {
-    let index = owen_scramble(index, shuffle);
-    let point = sobol4(index);
-    std::array::from_fn(|d| owen_scramble(point[d], seeds[d]))
+pub(crate) fn sobol_owen4(reversed_index: u32, shuffle: u32, seeds: [u32; 4]) -> [u32; 4] {
+    let [index] = scramble_reversed([reversed_index], [shuffle]);
+    scramble_reversed(sobol4_reversed(index), seeds).map(u32::reverse_bits)
 }
 
 #[cfg(test)]
@@ -107,7 +102,8 @@ mod tests {
         for (seed, first) in [(0u32, 0u32), (7, 0), (7, 64), (99, 128)] {
             let points: Vec<[u32; 4]> = (first..first + 64)
                 .map(|i| {
-                    sobol_owen4(i, seed, [seed, seed ^ 1, seed ^ 2, seed ^ 3].map(|s| s.wrapping_mul(0x9E37_79B9)))
+                    let seeds = [seed, seed ^ 1, seed ^ 2, seed ^ 3].map(|s| s.wrapping_mul(0x9E37_79B9));
+                    sobol_owen4(i.reverse_bits(), seed, seeds)
                 })
                 .collect();
             for log_x in 0..=6 {

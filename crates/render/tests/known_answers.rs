@@ -94,15 +94,17 @@ fn edges_and_small_things_in_a_furnace() {
     cuboid(Vec3::new(0.0, -1.0, 0.4), Vec3::new(0.03, 1.2, 0.03), false);
     scene.sphere(Vec3::new(0.5, -0.85, 0.3), 0.15, false, id, Some(0.25));
     let world = world(scene);
-    for mode in [Mode::Progressive, Mode::Gather] {
-        let settings = Settings { photons: Some(60_000), spp: 2, radius: Some(0.1), ..settings(mode) };
+    // As many photons in one map as in those of twelve passes. Over seeds means are 0.2 to 0.35 % too dark, what shares of
+    // discs leave, with a standard deviation of 0.08 %: a false alarm once in a thousand seeds.
+    for (mode, photons) in [(Mode::Progressive, 60_000), (Mode::Gather, 720_000)] {
+        let settings = Settings { photons: Some(photons), spp: 2, radius: Some(0.1), ..settings(mode) };
         let pixels = render(&world, settings, 12).0;
         let errors: Vec<f64> = pixels.iter().map(|p| mean(&[*p]) / 0.5 - 1.0).collect();
         let of_square = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
         let worst = errors.iter().fold(0f64, |worst, e| worst.max(e.abs()));
         let mean = mean(&pixels);
         println!("{mode:?}: mean {mean:.4}, root mean square error {of_square:.4}, worst {worst:.3}");
-        assert!((mean / 0.5 - 1.0).abs() < 0.004, "{mode:?}: mean {mean}");
+        assert!((mean / 0.5 - 1.0).abs() < 0.006, "{mode:?}: mean {mean}");
     }
 }
 
