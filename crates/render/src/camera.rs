@@ -22,10 +22,9 @@ pub struct CameraModel {
     view: Vec3,
     right: Vec3,
     up: Vec3,
-    /// Half the picture's size at unit distance (at any distance for parallel rays).
-    half: [f32; 2],
-    shift: [f32; 2],
-    size: [f32; 2],
+    /// From pixels on the film to its place at unit distance (at any distance for parallel rays): factor and offset.
+    across: [f32; 2],
+    down: [f32; 2],
     lens_radius: f32,
     focus_distance: f32,
     parallel: bool,
@@ -63,14 +62,14 @@ impl CameraModel {
             }
             Projection::Orthographic { half_width } => ([half_width, half_width / aspect], 0.0, 1.0, true),
         };
+        let shift = camera.principal_point;
         Self {
             origin: camera.origin,
             view,
             right,
             up,
-            half,
-            shift: camera.principal_point,
-            size: [width, height],
+            across: [2.0 * half[0] / width, (2.0 * shift[0] - 1.0) * half[0]],
+            down: [-2.0 * half[1] / height, (1.0 - 2.0 * shift[1]) * half[1]],
             lens_radius,
             focus_distance,
             parallel,
@@ -81,9 +80,9 @@ impl CameraModel {
     /// The ray through a point of the film, in pixels from its upper left corner. Draws from `sampler` only where the
     /// lens has a size.
     pub fn ray(&self, film: [f32; 2], sampler: &mut Sampler) -> CameraRay {
-        let x = (2.0 * film[0] / self.size[0] - 1.0 + 2.0 * self.shift[0]) * self.half[0];
-        let y = (1.0 - 2.0 * film[1] / self.size[1] - 2.0 * self.shift[1]) * self.half[1];
-        let pixel = 2.0 * self.half[0] / self.size[0];
+        let x = film[0] * self.across[0] + self.across[1];
+        let y = film[1] * self.down[0] + self.down[1];
+        let pixel = self.across[0];
         if self.parallel {
             let origin = self.origin + self.right * x + self.up * y;
             let ray = Ray { origin, t_min: self.clip[0], dir: self.view, t_max: self.clip[1] };
@@ -99,21 +98,25 @@ impl CameraModel {
         };
         let dir = towards.normalize();
         let cos = dir.dot(self.view).max(1e-6);
-        let ray = Ray { origin, t_min: self.clip[0] / cos, dir, t_max: self.clip[1] / cos };
+        let inv_cos = 1.0 / cos;
+        let ray = Ray { origin, t_min: self.clip[0] * inv_cos, dir, t_max: self.clip[1] * inv_cos };
         CameraRay { ray, width: 0.0, spread: pixel * cos }
     }
 }
 
-/// A point of the unit disc from a point of the unit square (Shirley and Chiu's concentric map, JGT 1997).
+/// A point of the unit disc from a point of the unit square (Shirley and Chiu, "A Low Distortion Map Between Disk and
+/// Square", JGT 1997). Angles are measured from the nearer axis.
+#[inline]
 pub(crate) fn uniform_disk(u: [f32; 2]) -> [f32; 2] {
     let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
-    if a == 0.0 && b == 0.0 {
+    let along_x = a.abs() > b.abs();
+    let (radius, other) = if along_x { (a, b) } else { (b, a) };
+    if radius == 0.0 {
         return [0.0, 0.0];
     }
-    use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
-    let (radius, angle) =
-        if a.abs() > b.abs() { (a, FRAC_PI_4 * (b / a)) } else { (b, FRAC_PI_2 - FRAC_PI_4 * (a / b)) };
-    [radius * libm::cosf(angle), radius * libm::sinf(angle)]
+    let (sin, cos) = libm::sincosf(std::f32::consts::FRAC_PI_4 * (other / radius));
+    let (near, far) = (radius * cos, radius * sin);
+    if along_x { [near, far] } else { [far, near] }
 }
 
 #[cfg(test)]

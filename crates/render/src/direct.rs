@@ -1,7 +1,7 @@
 //! The thesis's renderer: one photon map with all light in it, an estimate at every hit, reflected and transmitted
 //! children both followed to a level limit, no shadow rays (Figure 3: FireViewerRay, CalculateRayColour).
 
-use crate::bsdf::{LobeSet, TransportMode};
+use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::eye_pass::EyePass;
@@ -61,6 +61,10 @@ impl EyePass<'_> {
         let mut scratch = EstimateScratch::for_batch_of(&tracer);
         let mut found: Vec<Estimated> = Vec::new();
         let mut estimates = Estimates::default();
+        let mut bsdf = Bsdf::nothing();
+        // Of the rays that partly transparent surfaces drew numbers for.
+        let mut draws: Vec<Option<Sampler>> = Vec::new();
+        let mut next = Vec::new();
         let place = tile.place;
         for sample in 0..self.spp {
             if observer.cancelled() {
@@ -85,21 +89,23 @@ impl EyePass<'_> {
             while !nodes.is_empty() {
                 rays.clear();
                 rays.extend(nodes.iter().map(|n| n.ray));
-                let mut draws: Vec<Option<Sampler>> = nodes.iter().map(|_| None).collect();
+                draws.clear();
+                draws.resize(if self.world.passes_light { nodes.len() } else { 0 }, None);
                 tracer.ask(nodes.iter().map(|n| (n.kind(), n.record)));
                 tracer.closest(&rays, &mut hits, counters, |i| {
                     draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], place, sample)).next_1d()
                 });
                 nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
-                let mut next = Vec::new();
+                next.clear();
                 timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
-                    for (node, hit) in nodes.iter().zip(&hits) {
-                        let sampler = || self.node_sampler(node, place, sample);
-                        self.branch(node, hit, sampler, tile, &mut next, &mut estimates);
+                    for (i, (node, hit)) in nodes.iter().zip(&hits).enumerate() {
+                        let mut drawn = draws.get_mut(i).and_then(Option::take);
+                        let sampler = || drawn.take().unwrap_or_else(|| self.node_sampler(node, place, sample));
+                        self.branch(node, hit, sampler, &mut bsdf, tile, &mut next, &mut estimates);
                     }
                 });
                 counters.rays.specular += next.len() as u64;
-                nodes = next;
+                std::mem::swap(&mut nodes, &mut next);
             }
             maps.global.sort(&mut estimates.list, maps.knn);
             maps.global.estimate(&estimates.list, &estimates, maps.knn, &mut twin, &mut scratch, &mut found, counters);
@@ -117,28 +123,34 @@ impl EyePass<'_> {
         &self,
         node: &Node,
         hit: &Hit,
-        sampler: impl FnOnce() -> Sampler,
+        mut sampler: impl FnMut() -> Sampler,
+        bsdf: &mut Bsdf,
         tile: &mut Tile,
         next: &mut Vec<Node>,
         estimates: &mut Estimates,
     ) {
         if !hit.is_hit() {
             let radiance = self.lights.environment_radiance(node.ray.dir);
-            tile.emitted(node.pixel, node.throughput * radiance);
+            if radiance != Vec3::ZERO {
+                tile.emitted(node.pixel, node.throughput * radiance);
+            }
             return;
         }
         let width = node.width + node.spread * hit.t;
         let point = self.world.surface(&node.ray, hit, width);
         let wo = -node.ray.dir;
-        tile.emitted(node.pixel, node.throughput * self.world.emitted(&point, wo));
+        let emitted = self.world.emitted(&point, wo);
+        if emitted != Vec3::ZERO {
+            tile.emitted(node.pixel, node.throughput * emitted);
+        }
         let material = self.world.shapes[point.shape as usize].material;
-        let bsdf = self.world.materials.resolve(material, &point, wo);
+        self.world.materials.resolve_into(material, &point, wo, bsdf);
         if node.level == 0 {
-            self.first_surface(node.pixel, hit.t, &point, &bsdf, material.0, tile);
+            self.first_surface(node.pixel, hit.t, &point, bsdf, material.0, tile);
         }
         if bsdf.has(LobeSet::GATHER) {
             let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
-            let scatter = estimates.scatter(&bsdf);
+            let scatter = estimates.scatter(bsdf);
             estimates.list.push(Estimate {
                 query: GatherQuery {
                     position: point.position,
@@ -158,14 +170,19 @@ impl EyePass<'_> {
         if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {
             return;
         }
-        let mut sampler = sampler();
-        sampler.start_vertex();
+        let mut draws = None;
         for (child, side) in [LobeSet::REFLECTION, LobeSet::TRANSMISSION].into_iter().enumerate() {
             let set = LobeSet::CONTINUE & side;
             if !bsdf.has(set) {
                 continue;
             }
-            let (choice, u) = (sampler.next_1d(), sampler.next_2d());
+            let (choice, u) = if bsdf.is_certain(set) {
+                (0.0, [0.0; 2])
+            } else {
+                let draws: &mut Sampler = draws.get_or_insert_with(&mut sampler);
+                draws.start_vertex();
+                (draws.next_1d(), draws.next_2d())
+            };
             let Some(s) = bsdf.sample(set, choice, u, TransportMode::Radiance) else { continue };
             next.push(Node {
                 ray: Ray::new(point.ray_origin(s.wi), s.wi),

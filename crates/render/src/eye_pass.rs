@@ -132,6 +132,14 @@ struct Shadow {
     glossy: (Vec3, Part),
 }
 
+/// What paths ask for where they land.
+#[derive(Default)]
+struct Asked {
+    next: Vec<Path>,
+    shadows: Vec<Shadow>,
+    estimates: Estimates,
+}
+
 impl EyePass<'_> {
     /// Renders one pass into `film` (channels of each pixel of the window, row by row), means over the samples of
     /// the pass. Where it is stopped, tiles that have any sample are there, as means over those.
@@ -222,45 +230,46 @@ impl EyePass<'_> {
 
     /// Follows all paths of a batch to their ends; returns the estimates that they ask for.
     fn follow(&self, mut paths: Vec<Path>, tile: &mut Tile, tracer: &mut Tracer, counters: &mut Counters) -> Estimates {
-        let mut estimates = Estimates::default();
+        let mut asked = Asked::default();
+        let mut bsdf = Bsdf::nothing();
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
-        let (mut shadows, mut shadow_rays, mut visible) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut shadow_rays, mut visible) = (Vec::new(), Vec::new());
         while !paths.is_empty() {
             rays.clear();
             rays.extend(paths.iter().map(|p| p.ray));
             tracer.ask(paths.iter().map(|p| (p.kind(), p.record)));
             tracer.closest(&rays, &mut hits, counters, |i| paths[i].sampler.next_1d());
             paths.iter_mut().enumerate().for_each(|(i, path)| path.record = tracer.record_of(i));
-            let mut next = Vec::with_capacity(paths.len());
-            shadows.clear();
+            asked.next.clear();
+            asked.shadows.clear();
             timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
-                for (path, hit) in paths.into_iter().zip(&hits) {
+                for (path, hit) in paths.drain(..).zip(&hits) {
                     if hit.is_hit() {
                         let width = path.width + path.spread * hit.t;
                         let point = self.world.surface(&path.ray, hit, width);
-                        self.shade(path, hit.t, &point, tile, &mut next, &mut shadows, &mut estimates);
+                        self.shade(path, hit.t, &point, &mut bsdf, tile, &mut asked);
                     } else {
                         self.escape(&path, tile);
                     }
                 }
             });
             shadow_rays.clear();
-            shadow_rays.extend(shadows.iter().map(|s: &Shadow| s.ray));
+            shadow_rays.extend(asked.shadows.iter().map(|s| s.ray));
             counters.rays.shadow += shadow_rays.len() as u64;
-            tracer.ask(shadows.iter().map(|s| (RayKind::Shadow, s.record)));
+            tracer.ask(asked.shadows.iter().map(|s| (RayKind::Shadow, s.record)));
             tracer.visibility(&shadow_rays, &mut visible, counters);
-            for (shadow, &share) in shadows.iter().zip(&visible) {
+            for (shadow, &share) in asked.shadows.iter().zip(&visible) {
                 if share > 0.0 {
                     tile.add(shadow.pixel, shadow.diffuse.1, shadow.diffuse.0 * share);
                     tile.add(shadow.pixel, shadow.glossy.1, shadow.glossy.0 * share);
                 }
             }
-            let probes = next.iter().filter(|p: &&Path| p.probe).count() as u64;
+            let probes = asked.next.iter().filter(|p| p.probe).count() as u64;
             counters.rays.gather += probes;
-            counters.rays.specular += next.len() as u64 - probes;
-            paths = next;
+            counters.rays.specular += asked.next.len() as u64 - probes;
+            std::mem::swap(&mut paths, &mut asked.next);
         }
-        estimates
+        asked.estimates
     }
 
     /// A path leaves the scene.
@@ -286,10 +295,9 @@ impl EyePass<'_> {
         mut path: Path,
         distance: f32,
         point: &SurfacePoint,
+        bsdf: &mut Bsdf,
         tile: &mut Tile,
-        next: &mut Vec<Path>,
-        shadows: &mut Vec<Shadow>,
-        estimates: &mut Estimates,
+        asked: &mut Asked,
     ) {
         path.depth += 1;
         path.width += path.spread * distance;
@@ -308,9 +316,9 @@ impl EyePass<'_> {
             return;
         }
         let material = self.world.shapes[point.shape as usize].material;
-        let bsdf = self.world.materials.resolve(material, point, wo);
+        self.world.materials.resolve_into(material, point, wo, bsdf);
         if path.depth == 1 {
-            self.first_surface(path.pixel, distance, point, &bsdf, material.0, tile);
+            self.first_surface(path.pixel, distance, point, bsdf, material.0, tile);
         }
         if path.depth >= self.max_depth {
             return;
@@ -320,12 +328,12 @@ impl EyePass<'_> {
             let normal =
                 if point.geometric_normal.dot(wo) >= 0.0 { point.geometric_normal } else { -point.geometric_normal };
             path.last_place = self.lights.place(point.position, normal);
-            self.light(&mut path, point, &bsdf, shadows);
+            self.light(&mut path, point, bsdf, &mut asked.shadows);
         }
         if self.maps.is_some() && bsdf.has(LobeSet::GATHER) {
-            self.ask(&mut path, point, &bsdf, wo, tile, next, estimates);
+            self.ask(&mut path, point, bsdf, wo, tile, asked);
         }
-        self.bounce(path, point, &bsdf, next);
+        self.bounce(path, point, bsdf, &mut asked.next);
     }
 
     /// Direct light by shadow rays, the choice of lights stratified over them.
@@ -403,8 +411,7 @@ impl EyePass<'_> {
         bsdf: &Bsdf,
         wo: Vec3,
         tile: &Tile,
-        next: &mut Vec<Path>,
-        estimates: &mut Estimates,
+        Asked { next, estimates, .. }: &mut Asked,
     ) {
         let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
         let scatter = estimates.scatter(bsdf);

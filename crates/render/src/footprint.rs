@@ -24,7 +24,7 @@ mod tests {
     use crate::bsdf::SurfaceModel;
     use crate::{Compiled, SurfacePoint};
     use photinus_geometry::{Hit, Ray, Sphere, Vec2};
-    use photinus_scene::{Geometry, MaterialId, Mesh, Shape};
+    use photinus_scene::{ColorInput, Geometry, Material, MaterialId, Mesh, Shape, Texture, TextureId, TextureKind};
 
     const WIDTH: f32 = 1e-3;
 
@@ -32,6 +32,13 @@ mod tests {
     fn seen(geometry: Geometry, origin: Vec3, direction: Vec3) -> SurfacePoint {
         let mut scene = photinus_scene::builtin::find("furnace").unwrap().build();
         scene.shapes = vec![Shape { name: "only".into(), geometry, material: MaterialId(0), emission: None }];
+        // A material that reads a texture.
+        scene.textures = vec![Texture {
+            name: "colors".into(),
+            kind: TextureKind::VertexColor,
+            to_uv: photinus_geometry::Affine3A::IDENTITY,
+        }];
+        scene.materials[0].material = Material::Diffuse { reflectance: ColorInput::Texture(TextureId(0)) };
         let compiled = Compiled::new(scene);
         let options = photinus_accel::BuildOptions::default();
         let structure = photinus_accel::build("brute-force", compiled.primitives().clone(), &options).unwrap();

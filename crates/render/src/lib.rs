@@ -22,6 +22,7 @@ mod photon_pass;
 mod pilot;
 mod recording;
 mod renderer;
+mod runs;
 mod settings;
 mod support;
 mod surface;

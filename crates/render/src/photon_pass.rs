@@ -184,6 +184,7 @@ impl PhotonPass<'_> {
         }
         counters.rays.emitted += walks.len() as u64;
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
+        let mut bsdf = Bsdf::nothing();
         while !walks.is_empty() {
             rays.clear();
             rays.extend(walks.iter().map(|w| w.ray));
@@ -202,14 +203,14 @@ impl PhotonPass<'_> {
                     return false;
                 }
                 // A caustic needs a mirror first.
-                let material = world.shapes[world.shape_of(hit.prim)].material;
-                if self.keep == Keep::Caustic && walk.depth == 0 && world.materials.is_diffuse(material) {
+                let is_diffuse = || world.materials.is_diffuse(world.shapes[world.shape_of(hit.prim)].material);
+                if self.keep == Keep::Caustic && walk.depth == 0 && is_diffuse() {
                     counters.photons.absorbed += 1;
                     add(&mut counters.photons.power.absorbed, walk.flux);
                     return false;
                 }
                 let point = world.surface(&walk.ray, &hit, 0.0);
-                self.land(world, lights, walk, &point, &mut stored, &mut counters)
+                self.land(world, lights, walk, &point, &mut bsdf, &mut stored, &mut counters)
             };
             timed(self.profile_every > 0, &mut surfaces, || walks.retain_mut(&mut land));
             counters.spent.surfaces += surfaces;
@@ -225,15 +226,16 @@ impl PhotonPass<'_> {
         lights: &Lights,
         walk: &mut Walk,
         point: &SurfacePoint,
+        bsdf: &mut Bsdf,
         stored: &mut StoredPhotons,
         counters: &mut Counters,
     ) -> bool {
         walk.depth += 1;
         walk.sampler.start_vertex();
         let wo = -walk.ray.dir;
-        let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, point, wo);
+        world.materials.resolve_into(world.shapes[point.shape as usize].material, point, wo, bsdf);
         if bsdf.has(LobeSet::GATHER) {
-            self.store(walk, point, wo, &bsdf, stored, counters);
+            self.store(walk, point, wo, bsdf, stored, counters);
         }
         if walk.depth >= self.max_depth {
             counters.photons.cut += 1;
@@ -248,9 +250,9 @@ impl PhotonPass<'_> {
         let choice = walk.sampler.next_1d();
         let survival = walk.sampler.next_1d();
         let u = walk.sampler.next_2d();
-        let far = outside(lights.region(), point.position) && lights.aims() && bsdf.has(LobeSet::NON_DELTA);
+        let far = lights.aims() && outside(lights.region(), point.position) && bsdf.has(LobeSet::NON_DELTA);
         let sample = if far {
-            guided_sample(&bsdf, lights.region(), point.position, choice, u)
+            guided_sample(bsdf, lights.region(), point.position, choice, u)
         } else {
             bsdf.sample(LobeSet::ALL, choice, u, TransportMode::Importance)
                 .map(|s| (s.wi, s.weight, s.kind.intersects(LobeSet::CONTINUE)))

@@ -1,20 +1,22 @@
 //! A point on a surface, with all that shading needs.
 
 use crate::texture::TextureLookup;
-use photinus_geometry::{Frame, Vec2, Vec3};
+use photinus_geometry::{Vec2, Vec3};
 
-/// A point on a surface.
+/// A point on a surface. What the materials and lights that are on it do not read (see
+/// [`Reads`](crate::bsdf::Reads)) is not filled in: 0, and white.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
     /// Where, in world space.
     pub position: Vec3,
     /// Unit face normal on the side that the shape's normals point to.
     pub geometric_normal: Vec3,
-    /// Frame around the unit shading normal (same side as the face normal); x along dp/du.
-    pub frame: Frame,
+    /// Unit shading normal, on the same side as the face normal.
+    pub normal: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Change of position with u and v, not normalised, in scene units; for bump maps.
+    /// Change of position with u and v, not normalised, in scene units; for bump maps and brushed
+    /// metal.
     pub dp_du: Vec3,
     /// See `dp_du`.
     pub dp_dv: Vec3,

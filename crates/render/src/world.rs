@@ -2,8 +2,9 @@
 //! answers ray queries.
 
 use crate::SurfacePoint;
-use crate::bsdf::{Materials, SurfaceModel};
+use crate::bsdf::{Materials, Reads, SurfaceModel};
 use crate::footprint::uv_scale;
+use crate::runs::Runs;
 use photinus_accel::Structure;
 use photinus_geometry::{Aabb, Frame, Hit, Primitives, Ray, Vec2, Vec3};
 use photinus_profile::queries::QuerySink;
@@ -21,6 +22,11 @@ const OFFSET: f32 = 1.0 / 1_048_576.0;
 /// Keeps the offset above zero at the origin.
 const TINY: f32 = 1e-20;
 
+/// How far off a triangle with this corner and these edges rays must start.
+pub(crate) fn offset_on(corner: Vec3, edges: [Vec3; 2]) -> f32 {
+    OFFSET * (corner.abs() + edges[0].abs() + edges[1].abs()).max_element() + TINY
+}
+
 /// What a shape looks like to the renderer.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeRecord {
@@ -31,6 +37,8 @@ pub(crate) struct ShapeRecord {
     pub prim_count: u32,
     /// Some material around or inside this one lets light straight through.
     pub passes_light: bool,
+    /// What its material and its emission read of it.
+    pub reads: Reads,
     /// Start of the shape's vertices, and of its attributes where it has them.
     first_vertex: u32,
     normals: u32,
@@ -61,8 +69,7 @@ pub struct World {
     pub(crate) bounds: Aabb,
     pub(crate) passes_light: bool,
     pub(crate) shapes: Vec<ShapeRecord>,
-    /// First primitive of each run of one shape, and the shape; sorted.
-    runs: Vec<(u32, u32)>,
+    runs: Runs,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
     colors: Vec<Vec3>,
@@ -73,7 +80,7 @@ pub struct Compiled {
     scene: Scene,
     primitives: Arc<Primitives>,
     shapes: Vec<ShapeRecord>,
-    runs: Vec<(u32, u32)>,
+    runs: Runs,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
     colors: Vec<Vec3>,
@@ -96,6 +103,7 @@ impl Compiled {
                 first_prim: 0,
                 prim_count: 0,
                 passes_light: passes_light(&scene.materials, shape.material),
+                reads: Reads::ALL,
                 first_vertex: primitives.positions.len() as u32,
                 normals: NONE,
                 uvs: NONE,
@@ -128,7 +136,7 @@ impl Compiled {
             }
             shapes.push(record);
         }
-        runs.sort_unstable();
+        let runs = Runs::new(runs, primitives.len());
         Self { scene, primitives: Arc::new(primitives), shapes, runs, normals, uvs, colors }
     }
 
@@ -138,7 +146,11 @@ impl Compiled {
     }
 
     /// The finished world, with the structure that answers its rays.
-    pub fn with_structure(self, structure: Box<dyn Structure>, model: SurfaceModel) -> World {
+    pub fn with_structure(mut self, structure: Box<dyn Structure>, model: SurfaceModel) -> World {
+        let materials = Materials::new(&self.scene, model);
+        for shape in &mut self.shapes {
+            shape.reads = materials.reads(shape.material) | shape.emission.map_or(Reads::NONE, Reads::of_color);
+        }
         let Scene { name, camera, film, integrator, lights, .. } = &self.scene;
         World {
             name: name.clone(),
@@ -148,7 +160,7 @@ impl Compiled {
             lights: lights.clone(),
             bounds: self.primitives.bounds(),
             passes_light: self.shapes.iter().any(|s| s.passes_light),
-            materials: Materials::new(&self.scene, model),
+            materials,
             primitives: self.primitives,
             structure,
             recorder: None,
@@ -214,9 +226,9 @@ impl World {
     }
 
     /// Index of the shape that primitive `prim` belongs to.
+    #[inline]
     pub(crate) fn shape_of(&self, prim: u32) -> usize {
-        let run = self.runs.partition_point(|&(first, _)| first <= prim) - 1;
-        self.runs[run].1 as usize
+        self.runs.shape_of(prim)
     }
 
     /// Bytes of the geometry and its attributes, the structure left out.
@@ -228,6 +240,7 @@ impl World {
             + self.uvs.len() * 8
             + self.colors.len() * 12
             + self.shapes.len() * size_of::<ShapeRecord>()
+            + self.runs.bytes()
     }
 
     /// Bytes of textures and material tables.
@@ -260,10 +273,27 @@ impl World {
             return face;
         }
         let weights = [1.0 - hit.alpha - hit.beta, hit.alpha, hit.beta];
-        let vertices = self.primitives.triangles[hit.prim as usize];
-        let normal =
-            |i: usize| self.normals[(record.normals + vertices[i] - record.first_vertex) as usize] * weights[i];
+        let vertices = self.vertices(record, hit.prim as usize);
+        let normal = |i: usize| self.normals[(record.normals + vertices[i]) as usize] * weights[i];
         if face.dot(normal(0) + normal(1) + normal(2)) < 0.0 { -face } else { face }
+    }
+
+    /// Which side of a triangle's face, by the order of its vertices, is outside all over it: 1, -1, or none where its
+    /// vertex normals do not agree.
+    pub(crate) fn outer_side(&self, prim: u32) -> Option<f32> {
+        let record = &self.shapes[self.shape_of(prim)];
+        if record.normals == NONE {
+            return Some(1.0);
+        }
+        let [a, b, c] = self.primitives.triangle(prim as usize);
+        let face = (b - a).cross(c - a);
+        let along = self.vertices(record, prim as usize).map(|v| face.dot(self.normals[(record.normals + v) as usize]));
+        let sides = [along.iter().all(|&x| x > 0.0), along.iter().all(|&x| x < 0.0)];
+        match sides {
+            [true, _] => Some(1.0),
+            [_, true] => Some(-1.0),
+            _ => None,
+        }
     }
 
     /// The surface at a hit. `width` is the width of the pixel's cone there, in scene units; 0 where unknown.
@@ -271,13 +301,16 @@ impl World {
         let shape = self.shape_of(hit.prim);
         let record = &self.shapes[shape];
         let triangles = self.primitives.triangle_count() as u32;
+        let reads = Reads { tangents: record.reads.tangents || (record.reads.textures && width > 0.0), ..record.reads };
         let mut point = if hit.prim < triangles {
-            self.triangle_surface(record, hit.prim as usize, hit.alpha, hit.beta)
+            self.triangle_surface(record, reads, hit.prim as usize, hit.alpha, hit.beta)
         } else {
-            self.sphere_surface(record, (hit.prim - triangles) as usize, ray.at(hit.t))
+            self.sphere_surface(record, reads, (hit.prim - triangles) as usize, ray.at(hit.t))
         };
-        let scale = uv_scale(point.dp_du, point.dp_dv);
-        point.uv_footprint = if width > 0.0 && scale > 0.0 { width / scale } else { 0.0 };
+        if record.reads.textures && width > 0.0 {
+            let scale = uv_scale(point.dp_du, point.dp_dv);
+            point.uv_footprint = if scale > 0.0 { width / scale } else { 0.0 };
+        }
         point.shape = shape as u32;
         point.prim = hit.prim;
         point
@@ -286,102 +319,132 @@ impl World {
     /// The surface of triangle `prim` at barycentrics (alpha, beta); also where a light is sampled on it.
     pub(crate) fn triangle_point(&self, prim: u32, alpha: f32, beta: f32) -> SurfacePoint {
         let shape = self.shape_of(prim);
-        let mut point = self.triangle_surface(&self.shapes[shape], prim as usize, alpha, beta);
+        let record = &self.shapes[shape];
+        let mut point = self.triangle_surface(record, record.reads, prim as usize, alpha, beta);
         (point.shape, point.prim) = (shape as u32, prim);
         point
     }
 
-    fn triangle_surface(&self, record: &ShapeRecord, prim: usize, alpha: f32, beta: f32) -> SurfacePoint {
+    #[inline]
+    fn triangle_surface(&self, record: &ShapeRecord, reads: Reads, prim: usize, alpha: f32, beta: f32) -> SurfacePoint {
         let [a, b, c] = self.primitives.triangle(prim);
         let weights = [1.0 - alpha - beta, alpha, beta];
-        let local = self.primitives.triangles[prim].map(|v| v - record.first_vertex);
         let (e1, e2) = (b - a, c - a);
-        let position = a + e1 * alpha + e2 * beta;
         let face = e1.cross(e2).try_normalize().unwrap_or(Vec3::Z);
         let normal = if record.normals == NONE {
             face
         } else {
-            let n = local.map(|v| self.normals[(record.normals + v) as usize]);
+            let n = self.vertices(record, prim).map(|v| self.normals[(record.normals + v) as usize]);
             (n[0] * weights[0] + n[1] * weights[1] + n[2] * weights[2]).try_normalize().unwrap_or(face)
         };
-        // Vertex normals say which side is out; windings in real files often do not.
-        let geometric_normal = if face.dot(normal) < 0.0 { -face } else { face };
-        let (uv, dp_du, dp_dv) = if record.uvs == NONE {
-            (Vec2::new(alpha, beta), e1, e2)
-        } else {
-            let t = local.map(|v| self.uvs[(record.uvs + v) as usize]);
-            let uv = t[0] * weights[0] + t[1] * weights[1] + t[2] * weights[2];
-            let (d1, d2) = (t[1] - t[0], t[2] - t[0]);
-            let determinant = d1.x * d2.y - d1.y * d2.x;
-            if determinant == 0.0 || !determinant.is_finite() {
-                let frame = Frame::from_normal(face);
-                (uv, frame.s, frame.t)
-            } else {
-                let inv = 1.0 / determinant;
-                (uv, (e1 * d2.y - e2 * d1.y) * inv, (e2 * d1.x - e1 * d2.x) * inv)
-            }
-        };
-        let color = if record.colors == NONE {
-            Vec3::ONE
-        } else {
-            let c = local.map(|v| self.colors[(record.colors + v) as usize]);
-            c[0] * weights[0] + c[1] * weights[1] + c[2] * weights[2]
-        };
-        SurfacePoint {
-            position,
-            geometric_normal,
-            frame: Frame::from_normal_and_tangent(normal, dp_du),
-            uv,
-            dp_du,
-            dp_dv,
-            color,
+        let mut point = SurfacePoint {
+            position: a + e1 * alpha + e2 * beta,
+            // Vertex normals say which side is out; windings in real files often do not.
+            geometric_normal: if face.dot(normal) < 0.0 { -face } else { face },
+            normal,
+            uv: Vec2::ZERO,
+            dp_du: Vec3::ZERO,
+            dp_dv: Vec3::ZERO,
+            color: Vec3::ONE,
             uv_footprint: 0.0,
-            offset: OFFSET * (a.abs() + e1.abs() + e2.abs()).max_element() + TINY,
+            offset: offset_on(a, [e1, e2]),
             shape: 0,
             prim: 0,
+        };
+        if reads != Reads::NONE {
+            self.add_coordinates(record, reads, prim, [alpha, beta], &mut point);
+        }
+        point
+    }
+
+    /// Vertices of a triangle, counted from the first of its shape.
+    #[inline]
+    fn vertices(&self, record: &ShapeRecord, prim: usize) -> [u32; 3] {
+        self.primitives.triangles[prim].map(|v| v - record.first_vertex)
+    }
+
+    /// Texture coordinates of a point of a triangle, their directions, and its vertex colour.
+    fn add_coordinates(
+        &self,
+        record: &ShapeRecord,
+        reads: Reads,
+        prim: usize,
+        [alpha, beta]: [f32; 2],
+        point: &mut SurfacePoint,
+    ) {
+        let weights = [1.0 - alpha - beta, alpha, beta];
+        let local = self.vertices(record, prim);
+        let edges = || {
+            let [a, b, c] = self.primitives.triangle(prim);
+            (b - a, c - a)
+        };
+        if record.uvs == NONE {
+            point.uv = Vec2::new(alpha, beta);
+            (point.dp_du, point.dp_dv) = edges();
+        } else {
+            let t = local.map(|v| self.uvs[(record.uvs + v) as usize]);
+            point.uv = t[0] * weights[0] + t[1] * weights[1] + t[2] * weights[2];
+            if reads.tangents {
+                let (e1, e2) = edges();
+                let (d1, d2) = (t[1] - t[0], t[2] - t[0]);
+                let determinant = d1.x * d2.y - d1.y * d2.x;
+                (point.dp_du, point.dp_dv) = if determinant == 0.0 || !determinant.is_finite() {
+                    let frame = Frame::from_normal(point.geometric_normal);
+                    (frame.s, frame.t)
+                } else {
+                    let inv = 1.0 / determinant;
+                    ((e1 * d2.y - e2 * d1.y) * inv, (e2 * d1.x - e1 * d2.x) * inv)
+                };
+            }
+        }
+        if record.colors != NONE {
+            let c = local.map(|v| self.colors[(record.colors + v) as usize]);
+            point.color = c[0] * weights[0] + c[1] * weights[1] + c[2] * weights[2];
         }
     }
 
     /// The surface of sphere `index` (counted among spheres) nearest to `near`.
-    fn sphere_surface(&self, record: &ShapeRecord, index: usize, near: Vec3) -> SurfacePoint {
+    fn sphere_surface(&self, record: &ShapeRecord, reads: Reads, index: usize, near: Vec3) -> SurfacePoint {
         let sphere = self.primitives.spheres[index];
         let outward = (near - sphere.center).try_normalize().unwrap_or(Vec3::Z);
-        let position = sphere.center + outward * sphere.radius;
-        let [x, y, z] = record.axes;
-        let local = Vec3::new(x.dot(outward), y.dot(outward), z.dot(outward));
-        use std::f32::consts::{PI, TAU};
-        let phi = libm::atan2f(local.y, local.x);
-        let phi = if phi < 0.0 { phi + TAU } else { phi };
-        let theta = libm::acosf(local.z.clamp(-1.0, 1.0));
-        let uv = Vec2::new(phi / TAU, 1.0 - theta / PI);
-        let dp_du = (y * local.x - x * local.y) * (TAU * sphere.radius);
         let normal = if record.flip_normals { -outward } else { outward };
-        let dp_du = if dp_du.length_squared() > 1e-12 * sphere.radius * sphere.radius {
-            dp_du
-        } else {
-            Frame::from_normal(normal).s * sphere.radius
-        };
-        let dp_dv = outward.cross(dp_du.normalize()) * (PI * sphere.radius);
-        SurfacePoint {
-            position,
+        let mut point = SurfacePoint {
+            position: sphere.center + outward * sphere.radius,
             geometric_normal: normal,
-            frame: Frame::from_normal_and_tangent(normal, dp_du),
-            uv,
-            dp_du,
-            dp_dv,
+            normal,
+            uv: Vec2::ZERO,
+            dp_du: Vec3::ZERO,
+            dp_dv: Vec3::ZERO,
             color: Vec3::ONE,
             uv_footprint: 0.0,
             offset: OFFSET * (sphere.center.abs().max_element() + sphere.radius) + TINY,
             shape: 0,
             prim: 0,
+        };
+        let [x, y, z] = record.axes;
+        let local = Vec3::new(x.dot(outward), y.dot(outward), z.dot(outward));
+        use std::f32::consts::{PI, TAU};
+        if reads.textures {
+            let phi = libm::atan2f(local.y, local.x);
+            let phi = if phi < 0.0 { phi + TAU } else { phi };
+            let theta = libm::acosf(local.z.clamp(-1.0, 1.0));
+            point.uv = Vec2::new(phi / TAU, 1.0 - theta / PI);
         }
+        if reads.tangents {
+            let dp_du = (y * local.x - x * local.y) * (TAU * sphere.radius);
+            let at_pole = !(dp_du.length_squared() > 1e-12 * sphere.radius * sphere.radius);
+            point.dp_du = if at_pole { Frame::from_normal(normal).s * sphere.radius } else { dp_du };
+            point.dp_dv = outward.cross(point.dp_du.normalize()) * (PI * sphere.radius);
+        }
+        point
     }
 
     /// The surface of sphere primitive `prim` nearest to `near`.
     pub(crate) fn sphere_point(&self, prim: u32, near: Vec3) -> SurfacePoint {
         let shape = self.shape_of(prim);
         let index = prim as usize - self.primitives.triangle_count();
-        let mut point = self.sphere_surface(&self.shapes[shape], index, near);
+        let record = &self.shapes[shape];
+        let mut point = self.sphere_surface(record, record.reads, index, near);
         (point.shape, point.prim) = (shape as u32, prim);
         point
     }

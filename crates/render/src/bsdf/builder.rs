@@ -7,7 +7,6 @@ use super::scattering::{Bsdf, MAX_FRAMES, MAX_LOBES, ShadingFrame};
 use super::{GATHER_ALPHA, LobeSet, SurfaceModel};
 use crate::SurfacePoint;
 use crate::texture::TextureLookup;
-use arrayvec::ArrayVec;
 use photinus_geometry::{Frame, Vec3};
 use photinus_scene::{ColorInput, FloatInput, MaterialId};
 
@@ -43,31 +42,27 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Resolves `material` at `point` for `wo`.
-    pub fn resolve(materials: &'a Materials, material: MaterialId, point: &'a SurfacePoint, wo: Vec3) -> Bsdf {
+    /// Resolves `material` at `point` for `wo` in place of what `bsdf` was.
+    pub fn resolve(
+        materials: &'a Materials,
+        material: MaterialId,
+        point: &'a SurfacePoint,
+        wo: Vec3,
+        bsdf: &'a mut Bsdf,
+    ) {
         let side = if point.geometric_normal.dot(wo) < 0.0 { -1.0 } else { 1.0 };
         let ng = point.geometric_normal * side;
-        let ns = usable_normal(point.frame.n * side, ng, wo);
-        let axes = if ns == point.frame.n * side {
-            Frame { s: point.frame.s, t: point.frame.t, n: ns }
-        } else {
-            sided_frame(ns, point.frame.s, side)
-        };
+        let ns = usable_normal(point.normal * side, ng, wo);
+        let axes = sided_frame(ns, point.dp_du, side);
         let frame = ShadingFrame { axes, wo: local_wo(&axes, wo), bump_alpha_sq: 0.0 };
-        let mut bsdf = Bsdf {
-            wo,
-            ng,
-            ns,
-            shading_normal: ns,
-            frames: ArrayVec::new(),
-            lobes: ArrayVec::new(),
-            kinds: LobeSet::NONE,
-        };
+        (bsdf.wo, bsdf.ng, bsdf.ns, bsdf.shading_normal) = (wo, ng, ns, ns);
+        bsdf.frames.clear();
         bsdf.frames.push(frame);
-        let mut builder = Builder { materials, point, lookup: point.lookup(), side, bsdf: &mut bsdf, solid: 0.0 };
+        bsdf.lobes.clear();
+        bsdf.kinds = LobeSet::NONE;
+        let mut builder = Builder { materials, point, lookup: point.lookup(), side, bsdf, solid: 0.0 };
         builder.add(material, Place { share: 1.0, front: side > 0.0, frame: 0, depth: 0 });
         builder.finish();
-        bsdf
     }
 
     /// Adds the lobes of a nested material.
@@ -194,6 +189,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Lambertian reflection.
+    #[inline]
     pub fn lambert(&mut self, place: Place, albedo: Vec3) {
         self.push(place, LobeKind::Lambert, LobeSet::DIFFUSE_REFLECTION, albedo, [albedo, Vec3::ZERO], 1.0);
     }
@@ -272,21 +268,28 @@ fn unit(x: f32) -> f32 {
 }
 
 /// `wo` in local coordinates, kept off the horizon and of unit length.
+#[inline]
 fn local_wo(axes: &Frame, wo: Vec3) -> Vec3 {
     let v = axes.to_local(wo);
-    let v = Vec3::new(v.x, v.y, v.z.max(0.5 * LEAST_COSINE));
-    v.normalize_or(Vec3::Z)
+    if v.z > 0.5 * LEAST_COSINE { v } else { Vec3::new(v.x, v.y, 0.5 * LEAST_COSINE).normalize_or(Vec3::Z) }
 }
 
-/// Axes around `n`, which is on the side of `wo`; the outward frame is right-handed.
+/// Axes around `n`, which is on the side of `wo`; the outward frame is right-handed. Where nothing reads tangents there is
+/// none, and any axes will do.
+#[inline]
 fn sided_frame(n: Vec3, tangent: Vec3, side: f32) -> Frame {
-    let outward = Frame::from_normal_and_tangent(n * side, tangent);
+    let outward = if tangent == Vec3::ZERO {
+        Frame::from_normal(n * side)
+    } else {
+        Frame::from_normal_and_tangent(n * side, tangent)
+    };
     Frame { s: outward.s, t: outward.t, n }
 }
 
 /// A shading normal that agrees with the geometric one on the side and lets `wo` see its front: interpolated and bumped
 /// normals turn away from the viewer near silhouettes, where they would be black. Bent as little as needed. Both normals
 /// are on the side of `wo`.
+#[inline]
 fn usable_normal(n: Vec3, ng: Vec3, wo: Vec3) -> Vec3 {
     let mut n = if n.is_finite() { n } else { ng };
     let geometric = n.dot(ng);

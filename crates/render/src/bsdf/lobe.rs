@@ -62,18 +62,10 @@ pub(super) trait LobeShape {
     fn sample(&self, parts: LobeSet, wo: Vec3, u_lobe: f32, u: [f32; 2]) -> Option<LobeSample>;
 }
 
-/// Shirley and Chiu's concentric map ("A Low Distortion Map Between Disk and Square", 1997) lifted to the hemisphere:
-/// density cos / pi.
+/// The concentric map of the square to the disc lifted to the hemisphere: density cos / pi.
+#[inline]
 pub(super) fn sample_cosine(u: [f32; 2]) -> Vec3 {
-    let (a, b) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
-    let (r, phi) = if a == 0.0 && b == 0.0 {
-        (0.0, 0.0)
-    } else if a.abs() > b.abs() {
-        (a, PI / 4.0 * (b / a))
-    } else {
-        (b, PI / 2.0 - PI / 4.0 * (a / b))
-    };
-    let (x, y) = (r * libm::cosf(phi), r * libm::sinf(phi));
+    let [x, y] = crate::camera::uniform_disk(u);
     Vec3::new(x, y, (1.0 - x * x - y * y).max(1e-12).sqrt())
 }
 

@@ -2,7 +2,7 @@
 
 use super::builder::Builder;
 use super::microfacet::{InterfaceTable, SplitSumTable};
-use super::{Bsdf, SurfaceModel, fresnel_diffuse_reflectance};
+use super::{Bsdf, Reads, SurfaceModel, fresnel_diffuse_reflectance};
 use crate::SurfacePoint;
 use crate::texture::{TextureLookup, Textures};
 use photinus_geometry::Vec3;
@@ -25,6 +25,7 @@ struct Prepared {
     material: Material,
     has_opacity: bool,
     is_diffuse: bool,
+    reads: Reads,
 }
 
 /// A table that the lobes of a material look up; indices are inside over outside.
@@ -81,7 +82,11 @@ impl Materials {
                     }
                 }
             }
-            result.materials.push(Prepared { material, has_opacity, is_diffuse });
+            let reads = material
+                .nested()
+                .map(|id| result.materials[id.0 as usize].reads)
+                .fold(super::members::reads(&material), |all, nested| all | nested);
+            result.materials.push(Prepared { material, has_opacity, is_diffuse, reads });
         }
         result
     }
@@ -144,7 +149,14 @@ impl Materials {
     /// Holes are not part of it: it describes the surface that is met with probability
     /// [`opacity`](Self::opacity). Where nothing is there at all, light passes straight through.
     pub fn resolve(&self, material: MaterialId, point: &SurfacePoint, wo: Vec3) -> Bsdf {
-        Builder::resolve(self, material, point, wo)
+        let mut bsdf = Bsdf::nothing();
+        self.resolve_into(material, point, wo, &mut bsdf);
+        bsdf
+    }
+
+    /// As [`resolve`](Self::resolve), in place of what `bsdf` was: it is large, and made anew at every hit.
+    pub fn resolve_into(&self, material: MaterialId, point: &SurfacePoint, wo: Vec3, bsdf: &mut Bsdf) {
+        Builder::resolve(self, material, point, wo, bsdf);
     }
 
     /// Whether [`opacity`](Self::opacity) can be below 1 anywhere.
@@ -158,6 +170,11 @@ impl Materials {
     #[inline]
     pub fn is_diffuse(&self, material: MaterialId) -> bool {
         self.materials.get(material.0 as usize).is_none_or(|prepared| prepared.is_diffuse)
+    }
+
+    /// What of a surface is read where it is asked for its scattering or opacity.
+    pub fn reads(&self, material: MaterialId) -> Reads {
+        self.materials.get(material.0 as usize).map_or(Reads::NONE, |prepared| prepared.reads)
     }
 
     /// Probability, 0 to 1, that a ray meets the surface instead of passing straight through: masks, 0 for the null

@@ -21,7 +21,7 @@ mod transport;
 pub use fresnel::{fresnel_conductor, fresnel_dielectric, fresnel_diffuse_reflectance};
 pub use lobe_set::LobeSet;
 pub use materials::Materials;
-pub use members::{MATERIAL_KINDS, MaterialKind, material_kind};
+pub use members::{MATERIAL_KINDS, MaterialKind, Reads, material_kind};
 pub use scattering::{Bsdf, BsdfSample};
 pub use transport::{SurfaceModel, TransportMode};
 

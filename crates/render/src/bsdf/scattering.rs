@@ -79,6 +79,19 @@ pub struct Bsdf {
 }
 
 impl Bsdf {
+    /// A surface that absorbs all light: what [`resolve_into`](super::Materials::resolve_into) starts with.
+    pub fn nothing() -> Self {
+        Self {
+            wo: Vec3::Z,
+            ng: Vec3::Z,
+            ns: Vec3::Z,
+            shading_normal: Vec3::Z,
+            frames: ArrayVec::new(),
+            lobes: ArrayVec::new(),
+            kinds: LobeSet::NONE,
+        }
+    }
+
     /// Whether there is a lobe of one of these kinds.
     #[inline]
     pub fn has(&self, set: LobeSet) -> bool {
@@ -209,7 +222,8 @@ impl Bsdf {
             return None;
         }
         let eta = if drawn.wi.z < 0.0 { lobe.eta } else { 1.0 };
-        let alone = self.lobes().iter().filter(|l| (l.set & set & LobeSet::NON_DELTA) != LobeSet::NONE).count() == 1;
+        let drawable = |lobe: &&Lobe| lobe.set.intersects(set & LobeSet::NON_DELTA);
+        let alone = self.lobes().len() == 1 || self.lobes().iter().filter(drawable).count() == 1;
         let (weight, pdf) = if alone {
             let factor = self.mode_factor(frame, drawn.wi, wi, lobe.eta, mode);
             (drawn.weight * (factor / probability), drawn.pdf * probability)
@@ -226,8 +240,19 @@ impl Bsdf {
         })
     }
 
+    /// Whether [`sample`](Self::sample) with this set reads no random number: there is one direction, or none.
+    pub fn is_certain(&self, set: LobeSet) -> bool {
+        let mut lobes = self.lobes().iter().filter(|lobe| lobe.set.intersects(set));
+        let first = lobes.next();
+        first.is_none_or(|lobe| LobeSet::DELTA.contains(lobe.set)) && lobes.next().is_none()
+    }
+
     /// Chooses a lobe; also its probability and the random number stretched back to 0..1.
+    #[inline]
     fn choose(&self, set: LobeSet, u: f32) -> Option<(&Lobe, f32, f32)> {
+        if let [lobe] = self.lobes() {
+            return (lobe.importance(set) > 0.0).then_some((lobe, 1.0, u));
+        }
         let total: f32 = self.lobes().iter().map(|lobe| lobe.importance(set)).sum();
         if !(total > 0.0) {
             return None;

@@ -4,26 +4,22 @@
 
 use super::area::{cosine_hemisphere, uniform_cone, uniform_sphere, uniform_triangle};
 use super::lights::LightSample;
+use super::panel::{Panel, ShiningPoint, within_part};
 use super::sphere;
 use crate::{SurfacePoint, world::World};
 use photinus_geometry::{Frame, Ray, Vec3};
 use std::f32::consts::{PI, TAU};
 
 /// Most parts along the edge of a triangle, and parts of all emitters beyond one each.
-const MOST_CUTS: u32 = 24;
+pub(super) const MOST_CUTS: u32 = 24;
 const MOST_PARTS: u64 = 1 << 16;
 
 /// Cuts triangles into parts no wider than `width`, or than the least power of two times that with which there are not too
 /// many.
-pub(crate) fn cut(world: &World, emitters: &mut [Emitter], mut width: f32) {
-    let cuts = |prim: u32, width: f32| {
-        let [a, b, c] = world.primitives.triangle(prim as usize);
-        let widest = (b - a).length().max((c - b).length()).max((a - c).length());
-        cuts_for(widest, width)
-    };
+pub(crate) fn cut(emitters: &mut [Emitter], mut width: f32) {
     loop {
         let beyond = |emitter: &Emitter| match emitter {
-            Emitter::Triangle { prim, .. } => u64::from(cuts(*prim, width).pow(2) - 1),
+            Emitter::Triangle(panel) => u64::from(cuts_for(panel.widest(), width).pow(2) - 1),
             _ => 0,
         };
         if emitters.iter().map(beyond).sum::<u64>() <= MOST_PARTS {
@@ -32,8 +28,8 @@ pub(crate) fn cut(world: &World, emitters: &mut [Emitter], mut width: f32) {
         width *= 2.0;
     }
     for emitter in emitters {
-        if let Emitter::Triangle { prim, cuts: own } = emitter {
-            *own = cuts(*prim, width);
+        if let Emitter::Triangle(panel) = emitter {
+            panel.cuts = cuts_for(panel.widest(), width);
         }
     }
 }
@@ -47,33 +43,17 @@ fn cuts_for(widest: f32, width: f32) -> u32 {
 /// A primitive that emits, or a light without area.
 #[derive(Clone, Debug)]
 pub(crate) enum Emitter {
-    /// `cuts` parts along each edge, `cuts` squared in all.
-    Triangle {
-        prim: u32,
-        cuts: u32,
-    },
-    Sphere {
-        prim: u32,
-    },
-    Point {
-        position: Vec3,
-        intensity: Vec3,
-    },
-    Spot {
-        position: Vec3,
-        frame: Frame,
-        intensity: Vec3,
-        cutoff: f32,
-        beam: f32,
-        one_minus_cos: f32,
-    },
+    Triangle(Panel),
+    Sphere { prim: u32 },
+    Point { position: Vec3, intensity: Vec3 },
+    Spot { position: Vec3, frame: Frame, intensity: Vec3, cutoff: f32, beam: f32, one_minus_cos: f32 },
 }
 
 impl Emitter {
     /// The emitter that primitive `prim` is, in one part.
     pub fn of_primitive(world: &World, prim: u32) -> Self {
         if (prim as usize) < world.primitives.triangle_count() {
-            Self::Triangle { prim, cuts: 1 }
+            Self::Triangle(Panel::new(world, prim))
         } else {
             Self::Sphere { prim }
         }
@@ -82,7 +62,7 @@ impl Emitter {
     /// Number of parts.
     pub fn parts(&self) -> u32 {
         match self {
-            Self::Triangle { cuts, .. } => cuts * cuts,
+            Self::Triangle(panel) => panel.cuts * panel.cuts,
             _ => 1,
         }
     }
@@ -104,19 +84,15 @@ impl Emitter {
     /// About the power that a part sends out, W, mean of the channels; positive for everything that may emit.
     pub fn power(&self, world: &World, part: u32) -> f64 {
         let power = match self {
-            Self::Triangle { prim, cuts } => {
+            Self::Triangle(panel) => {
                 // A texture may be dark at any one point: look at several before calling the triangle dark.
                 const SAMPLES: [[f32; 2]; 7] =
                     [[0.33, 0.33], [0.1, 0.1], [0.8, 0.1], [0.1, 0.8], [0.45, 0.1], [0.1, 0.45], [0.45, 0.45]];
                 let total: f64 = SAMPLES
                     .iter()
-                    .map(|&at| {
-                        let [alpha, beta] = within_part(*cuts, part, at);
-                        let p = world.triangle_point(*prim, alpha, beta);
-                        mean(world.emitted(&p, p.geometric_normal))
-                    })
+                    .map(|&at| mean(panel.point(world, within_part(panel.cuts, part, at)).radiance))
                     .sum();
-                let area = part_area(world, *prim, *cuts);
+                let area = panel.part_area();
                 // Textured emission that the samples missed must keep some chance, or its light would be lost.
                 f64::from(PI) * f64::from(area) * (total / SAMPLES.len() as f64).max(1e-6)
             }
@@ -135,7 +111,7 @@ impl Emitter {
     /// Area of each part; 1 for lights without area.
     pub fn area(&self, world: &World) -> f32 {
         match self {
-            Self::Triangle { prim, cuts } => part_area(world, *prim, *cuts),
+            Self::Triangle(panel) => panel.part_area(),
             Self::Sphere { prim } => sphere_area(ball(world, *prim).radius),
             Self::Point { .. } | Self::Spot { .. } => 1.0,
         }
@@ -144,11 +120,7 @@ impl Emitter {
     /// Middle of a part, and the direction that it faces; zero where it shines all around.
     pub fn place(&self, world: &World, part: u32) -> (Vec3, Vec3) {
         match self {
-            Self::Triangle { prim, cuts } => {
-                let [alpha, beta] = within_part(*cuts, part, [1.0 / 3.0; 2]);
-                let [a, b, c] = world.primitives.triangle(*prim as usize);
-                (a + (b - a) * alpha + (c - a) * beta, triangle_normal(world, *prim))
-            }
+            Self::Triangle(panel) => (panel.place(within_part(panel.cuts, part, [1.0 / 3.0; 2])), panel.normal()),
             Self::Sphere { prim } => (ball(world, *prim).center, Vec3::ZERO),
             Self::Point { position, .. } => (*position, Vec3::ZERO),
             Self::Spot { position, frame, .. } => (*position, frame.n),
@@ -158,28 +130,26 @@ impl Emitter {
     /// A point on a part as seen from `from`; the density is over solid angle, or 1 for lights without area.
     pub fn sample(&self, world: &World, part: u32, from: Vec3, u: [f32; 2]) -> LightSample {
         match self {
-            Self::Triangle { prim, cuts } => {
-                let [alpha, beta] = within_part(*cuts, part, uniform_triangle(u));
-                let light = world.triangle_point(*prim, alpha, beta);
+            Self::Triangle(panel) => {
+                let light = panel.sample(world, part, u);
                 let to = light.position - from;
                 let distance_sq = to.length_squared();
                 let dir = to / distance_sq.sqrt();
-                let cos = triangle_normal(world, *prim).dot(dir).abs();
-                let pdf = distance_sq / (cos * part_area(world, *prim, *cuts)).max(1e-30);
-                of_surface(world, &light, dir, pdf)
+                let cos = light.normal.dot(dir).abs();
+                let pdf = distance_sq / (cos * panel.part_area()).max(1e-30);
+                of_surface(&light, dir, pdf)
             }
             Self::Sphere { prim } => {
                 let ball = ball(world, *prim);
                 match sphere::sample(&ball, from, u) {
-                    Some((dir, at, pdf)) => of_surface(world, &world.sphere_point(*prim, at), dir, pdf),
+                    Some((dir, at, pdf)) => of_surface(&ball_point(world, *prim, at), dir, pdf),
                     None => {
-                        let at = ball.center + uniform_sphere(u) * ball.radius;
-                        let light = world.sphere_point(*prim, at);
+                        let light = ball_point(world, *prim, ball.center + uniform_sphere(u) * ball.radius);
                         let to = light.position - from;
                         let distance_sq = to.length_squared();
                         let dir = to / distance_sq.sqrt();
-                        let cos = light.geometric_normal.dot(dir).abs();
-                        of_surface(world, &light, dir, distance_sq / (cos * sphere_area(ball.radius)).max(1e-30))
+                        let cos = light.normal.dot(dir).abs();
+                        of_surface(&light, dir, distance_sq / (cos * sphere_area(ball.radius)).max(1e-30))
                     }
                 }
             }
@@ -199,15 +169,9 @@ impl Emitter {
     }
 
     /// The part that the point `at` lies on.
-    pub fn part_of(&self, world: &World, at: &SurfacePoint) -> u32 {
+    pub fn part_of(&self, at: &SurfacePoint) -> u32 {
         match self {
-            Self::Triangle { prim, cuts } if *cuts > 1 => {
-                let [a, b, c] = world.primitives.triangle(*prim as usize);
-                let (u, v, w) = (b - a, c - a, at.position - a);
-                let normal = u.cross(v);
-                let scale = 1.0 / normal.length_squared().max(f32::MIN_POSITIVE);
-                part_at(*cuts, [w.cross(v).dot(normal) * scale, u.cross(w).dot(normal) * scale])
-            }
+            Self::Triangle(panel) => panel.part_of(at.position),
             _ => 0,
         }
     }
@@ -222,7 +186,7 @@ impl Emitter {
             distance_sq / (cos * area).max(1e-30)
         };
         match self {
-            Self::Triangle { prim, cuts } => by_area(triangle_normal(world, *prim), part_area(world, *prim, *cuts)),
+            Self::Triangle(panel) => by_area(panel.normal(), panel.part_area()),
             Self::Sphere { prim } => {
                 let ball = ball(world, *prim);
                 match sphere::cone(&ball, from) {
@@ -237,15 +201,11 @@ impl Emitter {
     /// The way of a photon from anywhere on it, and its flux if it were the only one.
     pub fn start(&self, world: &World, place: [f32; 2], way: [f32; 2]) -> (Ray, Vec3) {
         match self {
-            Self::Triangle { prim, .. } => {
-                let [alpha, beta] = uniform_triangle(place);
-                let light = world.triangle_point(*prim, alpha, beta);
-                lambertian(world, &light, way, part_area(world, *prim, 1))
-            }
+            Self::Triangle(panel) => lambertian(&panel.point(world, uniform_triangle(place)), way, panel.area()),
             Self::Sphere { prim } => {
                 let ball = ball(world, *prim);
-                let light = world.sphere_point(*prim, ball.center + uniform_sphere(place) * ball.radius);
-                lambertian(world, &light, way, sphere_area(ball.radius))
+                let light = ball_point(world, *prim, ball.center + uniform_sphere(place) * ball.radius);
+                lambertian(&light, way, sphere_area(ball.radius))
             }
             Self::Point { position, intensity } => (Ray::new(*position, uniform_sphere(way)), *intensity * (4.0 * PI)),
             Self::Spot { position, frame, intensity, cutoff, beam, one_minus_cos } => {
@@ -257,19 +217,18 @@ impl Emitter {
     }
 }
 
-fn of_surface(world: &World, light: &SurfacePoint, dir: Vec3, pdf: f32) -> LightSample {
-    LightSample { dir, target: Some(light.ray_origin(-dir)), radiance: world.emitted(light, -dir), pdf, delta: false }
+fn of_surface(light: &ShiningPoint, dir: Vec3, pdf: f32) -> LightSample {
+    LightSample { dir, target: Some(light.ray_origin(-dir)), radiance: light.radiance_to(-dir), pdf, delta: false }
 }
 
 fn without_area(dir: Vec3, position: Vec3, radiance: Vec3) -> LightSample {
     LightSample { dir, target: Some(position), radiance, pdf: 1.0, delta: true }
 }
 
-fn lambertian(world: &World, light: &SurfacePoint, u: [f32; 2], area: f32) -> (Ray, Vec3) {
+fn lambertian(light: &ShiningPoint, u: [f32; 2], area: f32) -> (Ray, Vec3) {
     let (local, _) = cosine_hemisphere(u);
-    let dir = Frame::from_normal(light.geometric_normal).to_world(local);
-    let radiance = world.emitted(light, light.geometric_normal);
-    (Ray::new(light.ray_origin(dir), dir), radiance * (PI * area))
+    let dir = Frame::from_normal(light.normal).to_world(local);
+    (Ray::new(light.ray_origin(dir), dir), light.radiance * (PI * area))
 }
 
 /// Linear fall of a spot's intensity from the beam's edge to the cutoff.
@@ -283,46 +242,12 @@ fn falloff(angle: f32, cutoff: f32, beam: f32) -> f32 {
     }
 }
 
+fn ball_point(world: &World, prim: u32, near: Vec3) -> ShiningPoint {
+    ShiningPoint::of_surface(world, &world.sphere_point(prim, near))
+}
+
 fn ball(world: &World, prim: u32) -> photinus_geometry::Sphere {
     world.primitives.spheres[prim as usize - world.primitives.triangle_count()]
-}
-
-fn triangle_cross(world: &World, prim: u32) -> Vec3 {
-    let [a, b, c] = world.primitives.triangle(prim as usize);
-    (b - a).cross(c - a)
-}
-
-fn part_area(world: &World, prim: u32, cuts: u32) -> f32 {
-    0.5 * triangle_cross(world, prim).length() / (cuts * cuts) as f32
-}
-
-/// Barycentrics in a triangle of the point with barycentrics `at` in one of its parts. Row `i` of parts, counted along
-/// the first barycentric, has `cuts - i` upright parts and between them `cuts - i - 1` that stand on their heads.
-fn within_part(cuts: u32, part: u32, at: [f32; 2]) -> [f32; 2] {
-    if cuts == 1 {
-        return at;
-    }
-    let (mut row, mut rest) = (0, part);
-    while rest > 2 * (cuts - row - 1) {
-        rest -= 2 * (cuts - row) - 1;
-        row += 1;
-    }
-    let (i, j, n) = (row as f32, (rest / 2) as f32, cuts as f32);
-    if rest % 2 == 0 { [(i + at[0]) / n, (j + at[1]) / n] } else { [(i + 1.0 - at[0]) / n, (j + 1.0 - at[1]) / n] }
-}
-
-/// The part that holds the point with these barycentrics, each clamped into the triangle.
-fn part_at(cuts: u32, [alpha, beta]: [f32; 2]) -> u32 {
-    let n = cuts as f32;
-    let (x, y) = (alpha.clamp(0.0, 1.0) * n, beta.clamp(0.0, 1.0) * n);
-    let i = (x as u32).min(cuts - 1);
-    let j = (y as u32).min(cuts - 1 - i);
-    let upside_down = (x - i as f32) + (y - j as f32) > 1.0 && j < cuts - 1 - i;
-    i * (2 * cuts - i) + 2 * j + u32::from(upside_down)
-}
-
-fn triangle_normal(world: &World, prim: u32) -> Vec3 {
-    triangle_cross(world, prim).try_normalize().unwrap_or(Vec3::Z)
 }
 
 fn sphere_area(radius: f32) -> f32 {
@@ -346,24 +271,5 @@ mod tests {
         for (widest, width) in [(0.0, 0.0), (f32::INFINITY, 1.0), (f32::NAN, 1.0), (1.0, 0.0)] {
             assert_eq!(cuts_for(widest, width), 1);
         }
-    }
-
-    #[test]
-    fn parts_hold_their_points_and_fill_the_triangle() {
-        for cuts in [1, 2, 3, 7, MOST_CUTS] {
-            let mut sum = [0.0f64; 2];
-            for part in 0..cuts * cuts {
-                for at in [[0.3, 0.3], [0.02, 0.9], [0.9, 0.02], [0.02, 0.02]] {
-                    let [alpha, beta] = within_part(cuts, part, at);
-                    assert!(alpha >= 0.0 && beta >= 0.0 && alpha + beta <= 1.0, "{cuts} {part} {alpha} {beta}");
-                    assert_eq!(part_at(cuts, [alpha, beta]), part, "{cuts} {alpha} {beta}");
-                }
-                let middle = within_part(cuts, part, [1.0 / 3.0; 2]);
-                (0..2).for_each(|k| sum[k] += f64::from(middle[k]) / f64::from(cuts * cuts));
-            }
-            // Parts of equal area: their middles have the triangle's as their mean.
-            assert!((sum[0] - 1.0 / 3.0).abs() < 1e-5 && (sum[1] - 1.0 / 3.0).abs() < 1e-5);
-        }
-        assert!(part_at(4, [1.0, 0.0]) < 16 && part_at(4, [0.0, 1.0]) < 16 && part_at(4, [0.7, 0.7]) < 16);
     }
 }

@@ -104,7 +104,7 @@ impl Lights {
                 emitters.extend(prims.map(|prim| Emitter::of_primitive(world, prim)));
             }
         }
-        emitter::cut(world, &mut emitters, PART * region.radius);
+        emitter::cut(&mut emitters, PART * region.radius);
         let (mut distant, mut sky) = (Vec::new(), None);
         for light in &world.lights {
             match light {
@@ -314,7 +314,7 @@ impl Lights {
             return 0.0;
         }
         let emitter = (first + at.prim - world.shapes[at.shape as usize].first_prim) as usize;
-        let part = self.first_part[emitter] + self.emitters[emitter].part_of(world, at);
+        let part = self.first_part[emitter] + self.emitters[emitter].part_of(at);
         let (group, share) = self.clusters.find(part as usize);
         self.probability(place, group) * share * self.emitters[emitter].pdf(world, from, at)
     }

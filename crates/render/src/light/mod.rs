@@ -12,6 +12,7 @@ mod environment;
 mod far;
 mod guide;
 mod lights;
+mod panel;
 mod sky_pool;
 mod sky_view;
 mod sphere;

@@ -12,6 +12,7 @@ mod mask;
 mod normal_map;
 mod plastic;
 mod principled;
+mod reads;
 mod rough_conductor;
 mod rough_dielectric;
 mod rough_plastic;
@@ -20,6 +21,8 @@ mod thin_dielectric;
 mod two_sided;
 
 pub use list::{MATERIAL_KINDS, MaterialKind, material_kind};
+pub use reads::Reads;
+pub(super) use reads::reads;
 
 use super::builder::{Builder, Place};
 use super::materials::{Materials, Table};

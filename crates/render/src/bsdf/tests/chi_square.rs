@@ -155,7 +155,7 @@ fn samples_follow_their_density() {
         for (z, phi) in [(0.95, 0.3), (0.5, 2.0), (0.1, 4.0), (-0.6, 1.0)] {
             for point in [flat_point(), tilted_point(Vec3::new(0.3, 0.2, 1.0).normalize())] {
                 // The tilted point costs as much as the flat one and tests less: one direction is enough.
-                if point.frame.n != Vec3::Z && z != 0.5 {
+                if point.normal != Vec3::Z && z != 0.5 {
                     continue;
                 }
                 let bsdf = materials.resolve(id, &point, direction(z, phi));
@@ -166,7 +166,7 @@ fn samples_follow_their_density() {
                     if kinds.is_empty() || (i > 0 && (kinds == bsdf.kinds() & LobeSet::NON_DELTA || z == 0.95)) {
                         continue;
                     }
-                    tests.push((format!("{} z {z} {set:?} {}", subject.name, point.frame.n), bsdf.clone(), set));
+                    tests.push((format!("{} z {z} {set:?} {}", subject.name, point.normal), bsdf.clone(), set));
                 }
             }
         }

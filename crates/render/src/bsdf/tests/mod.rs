@@ -12,7 +12,7 @@ mod subjects;
 
 use super::{Bsdf, Materials, SurfaceModel};
 use crate::SurfacePoint;
-use photinus_geometry::{Affine3A, Frame, Vec2, Vec3};
+use photinus_geometry::{Affine3A, Vec2, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_scene::{ColorInput, FloatInput, Material, MaterialId, NamedMaterial, Texture, TextureKind};
 
@@ -75,7 +75,7 @@ pub(super) fn tilted_point(n: Vec3) -> SurfacePoint {
         position: Vec3::ZERO,
         offset: 1e-4,
         geometric_normal: Vec3::Z,
-        frame: Frame::from_normal_and_tangent(n, Vec3::X),
+        normal: n,
         uv: Vec2::new(0.3, 0.4),
         dp_du: Vec3::X,
         dp_dv: Vec3::Y,

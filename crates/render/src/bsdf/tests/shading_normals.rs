@@ -3,7 +3,7 @@
 use super::subjects::{picture, subjects};
 use super::{direction, flat_point, grey, prepare, sampler, sphere, tilted_point};
 use crate::bsdf::{LobeSet, SurfaceModel, TransportMode};
-use photinus_geometry::{Frame, Vec2, Vec3};
+use photinus_geometry::{Vec2, Vec3};
 use photinus_scene::{Material, MaterialId, TextureId};
 
 /// Random and degenerate points and directions for every material: values are finite, not negative, and never cross
@@ -29,8 +29,7 @@ fn nothing_leaks_and_nothing_is_nan() {
             let (ng, ns, wo, wi) = (pick(s.next_2d()), pick(s.next_2d()), pick(s.next_2d()), pick(s.next_2d()));
             let mut point = flat_point();
             point.geometric_normal = ng;
-            point.frame =
-                Frame::from_normal_and_tangent(if k % 2 == 0 { ns } else { (ng + ns * 0.4).normalize_or(ng) }, wi);
+            point.normal = if k % 2 == 0 { ns } else { (ng + ns * 0.4).normalize_or(ng) };
             point.uv = Vec2::new(s.next_1d() * 4.0 - 2.0, if k % 17 == 0 { f32::NAN } else { s.next_1d() });
             point.dp_du = if k % 5 == 0 { Vec3::ZERO } else { wi * 3.0 };
             point.dp_dv = ns;
