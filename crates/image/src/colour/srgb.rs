@@ -14,3 +14,72 @@ pub fn linear_to_srgb(linear: f32) -> f32 {
 pub fn luminance(rgb: [f32; 3]) -> f32 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
+
+/// The nearest of 256 codes of an sRGB sample; NaN becomes 0.
+fn quantise(encoded: f32) -> u8 {
+    // `as` saturates and turns NaN into 0.
+    (encoded * 255.0 + 0.5) as u8
+}
+
+/// Parts of 0..1 that have their own entry point into the codes: narrow enough for one or two of them each.
+const PARTS: usize = 4096;
+
+/// The codes of linear light by table: what [`linear_to_srgb`] gives, rounded to eight bits, without its power.
+pub(crate) struct SrgbCodes {
+    /// For each code but the last, the least light of the next one.
+    ends: [f32; 255],
+    /// The code at the lower end of each part.
+    first: [u8; PARTS],
+}
+
+impl SrgbCodes {
+    /// Looks for the ends of all codes.
+    pub fn new() -> Self {
+        let code = |linear: f32| quantise(linear_to_srgb(linear));
+        let mut ends = [0.0; 255];
+        for (k, end) in ends.iter_mut().enumerate() {
+            // Positive floats are ordered as their bits.
+            let (mut below, mut reached) = (0.0f32.to_bits(), 1.0f32.to_bits());
+            while reached - below > 1 {
+                let middle = below + (reached - below) / 2;
+                if usize::from(code(f32::from_bits(middle))) > k { reached = middle } else { below = middle }
+            }
+            *end = f32::from_bits(reached);
+        }
+        Self { first: std::array::from_fn(|part| code(part as f32 / PARTS as f32)), ends }
+    }
+
+    /// The code of linear light; out of range clamps, NaN is 0.
+    pub fn nearest(&self, linear: f32) -> u8 {
+        if linear >= 1.0 {
+            return 255;
+        }
+        // A product with a power of two is exact; the conversion takes negative numbers and NaN to 0.
+        let mut code = self.first[(linear * PARTS as f32) as usize];
+        while code < 255 && linear >= self.ends[usize::from(code)] {
+            code += 1;
+        }
+        code
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the formula: around the end of every code and every part, and everywhere between.
+    #[test]
+    fn codes_are_those_of_the_formula() {
+        let codes = SrgbCodes::new();
+        let formula = |linear: f32| quantise(linear_to_srgb(linear.clamp(0.0, 1.0)));
+        let around = |x: f32| (x.to_bits().saturating_sub(300)..x.to_bits() + 300).map(f32::from_bits);
+        let parts = (0..=PARTS).map(|i| i as f32 / PARTS as f32);
+        let between = (0..1_000_000).map(|i| i as f32 / 999_983.0);
+        for x in codes.ends.into_iter().chain(parts).flat_map(around).chain(between) {
+            assert_eq!(codes.nearest(x), formula(x), "{x}");
+        }
+        for (x, code) in [(f32::NAN, 0), (-1.0, 0), (f32::NEG_INFINITY, 0), (7.0, 255), (f32::INFINITY, 255)] {
+            assert_eq!(codes.nearest(x), code);
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! PNG out: 8 bits a channel, tone-mapped and sRGB-encoded.
 
 use super::atomic::write_atomic;
-use crate::colour::linear_to_srgb;
+use crate::colour::SrgbCodes;
 use crate::error::{ImageError, ImageErrorKind, Result};
 use crate::image::Image;
 use crate::tonemap::Tonemap;
@@ -9,6 +9,9 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use rayon::prelude::*;
 use std::path::Path;
+
+/// Pixels that one task encodes: a handful of microseconds' worth are not worth handing over.
+const PIXELS_A_TASK: usize = 4096;
 
 /// Writes a picture as 8-bit sRGB PNG, atomically: exposure in stops (EV), then the tone curve, then the sRGB curve.
 pub fn write_png(path: impl AsRef<Path>, image: &Image, tonemap: Tonemap, exposure_ev: f32) -> Result<()> {
@@ -35,18 +38,10 @@ pub fn write_png8_rgba(path: impl AsRef<Path>, width: usize, height: usize, samp
 
 fn encode(image: &Image, tonemap: Tonemap, exposure_ev: f32, path: &Path) -> Result<Vec<u8>> {
     let scale = libm::exp2f(exposure_ev);
-    let samples: Vec<[u8; 3]> = image
-        .pixels
-        .par_iter()
-        .map(|pixel| tonemap.map(pixel.map(|c| c * scale)).map(|c| quantise(linear_to_srgb(c))))
-        .collect();
+    let codes = SrgbCodes::new();
+    let shown = |pixel: &[f32; 3]| tonemap.map(pixel.map(|c| c * scale)).map(|c| codes.nearest(c));
+    let samples: Vec<[u8; 3]> = image.pixels.par_iter().with_min_len(PIXELS_A_TASK).map(shown).collect();
     encode_rgb8(image.width, image.height, samples.as_flattened(), path)
-}
-
-/// The nearest of 256 codes; NaN becomes 0.
-fn quantise(encoded: f32) -> u8 {
-    // `as` saturates and turns NaN into 0.
-    (encoded * 255.0 + 0.5) as u8
 }
 
 fn encode_rgb8(width: usize, height: usize, samples: &[u8], path: &Path) -> Result<Vec<u8>> {
