@@ -1,7 +1,8 @@
 //! What every ray-triangle method promises, checked on all of them against an independent oracle.
 
 use photinus_geometry::{Hit, Primitives, Ray, Vec3};
-use photinus_intersect::methods::{badouel::Badouel, moller_trumbore::MollerTrumbore, woop::Woop};
+use photinus_intersect::methods::woop::{Woop, finish, finish_lanes};
+use photinus_intersect::methods::{badouel::Badouel, moller_trumbore::MollerTrumbore};
 use photinus_intersect::{DEFAULT_METHOD, METHODS, MethodInfo, RtiMethod, TriangleHit, find_method};
 use photinus_num::{Counted, OpCounts, Sampler, Scalar, StreamKind};
 use std::cell::Cell;
@@ -300,6 +301,36 @@ fn woop_gives_weights_on_slivers() {
         }
     }
     assert!(hits > 1000, "{hits}");
+}
+
+#[test]
+fn woop_finishes_lanes_as_it_finishes_one() {
+    // Few different values: half of the triangles have edges through the ray, corners that coincide or no area.
+    let values = [-2.0, -1.0, -0.0, 0.0, 0.5, 1.0, 3.0, 1e-200, 1e300, f64::INFINITY, f64::NAN];
+    let (mut hits, mut misses) = (0, 0);
+    for i in 0..40_000 {
+        let mut sampler = Sampler::new(8, StreamKind::Test, 0, i);
+        let common = if i % 2 == 0 { 7 } else { values.len() };
+        let mut draw = || values[(sampler.next_1d() * common as f32) as usize];
+        let sheared: [[[f64; 4]; 3]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| [0; 4].map(|_| draw())));
+        let dir_z = [0; 4].map(|_| draw());
+        let found = finish_lanes(&sheared, &dir_z);
+        for lane in 0..4 {
+            match finish(&sheared.map(|v| v.map(|axis| axis[lane])), dir_z[lane]) {
+                Some(hit) => {
+                    let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+                    assert!(same(hit.t, found.t[lane]) && same(hit.alpha, found.alpha[lane]), "{sheared:?} {dir_z:?}");
+                    assert!(same(hit.beta, found.beta[lane]));
+                    hits += 1;
+                }
+                None => {
+                    assert!(found.t[lane].is_nan(), "{sheared:?} {dir_z:?}");
+                    misses += 1;
+                }
+            }
+        }
+    }
+    assert!(hits > 10_000 && misses > 10_000, "{hits} {misses}");
 }
 
 #[test]

@@ -89,6 +89,51 @@ pub fn finish(sheared: &[[f64; 3]; 3], dir_z: f64) -> Option<TriangleHit<f64>> {
     Some(TriangleHit { t, alpha: v * inv_det, beta: w * inv_det })
 }
 
+/// What [`finish_lanes`] gives, by lane.
+pub struct LaneHits<const N: usize> {
+    /// Ray parameters; not a number where there is no hit.
+    pub t: [f64; N],
+    /// Weights of second vertices.
+    pub alpha: [f64; N],
+    /// Weights of third vertices.
+    pub beta: [f64; N],
+}
+
+/// [`finish`] for `N` triangles at a time, each with a ray of its own: coordinates by vertex, axis and lane. No branch
+/// depends on what a lane holds.
+#[inline(always)]
+pub fn finish_lanes<const N: usize>(sheared: &[[[f64; N]; 3]; 3], dir_z: &[f64; N]) -> LaneHits<N> {
+    let [a, b, c] = sheared;
+    let (mut u, mut v, mut w) = ([0.0; N], [0.0; N], [0.0; N]);
+    for i in 0..N {
+        u[i] = c[0][i] * b[1][i] - c[1][i] * b[0][i];
+    }
+    for i in 0..N {
+        v[i] = a[0][i] * c[1][i] - a[1][i] * c[0][i];
+    }
+    for i in 0..N {
+        w[i] = b[0][i] * a[1][i] - b[1][i] * a[0][i];
+    }
+    let mut out = LaneHits { t: [0.0; N], alpha: [0.0; N], beta: [0.0; N] };
+    for i in 0..N {
+        let det = u[i] + v[i] + w[i];
+        let inv_det = 1.0 / det;
+        let t = (u[i] * a[2][i] + v[i] * b[2][i] + w[i] * c[2][i]) * inv_det / dir_z[i];
+        // Where one of them is not a number the sum is none either.
+        let lower = |x: f64, y: f64| if x < y { x } else { y };
+        let upper = |x: f64, y: f64| if x > y { x } else { y };
+        let t = if lower(lower(u[i], v[i]), w[i]) < 0.0 {
+            if upper(upper(u[i], v[i]), w[i]) > 0.0 { f64::NAN } else { t }
+        } else {
+            t
+        };
+        out.t[i] = if det.abs() > 0.0 { t } else { f64::NAN };
+        out.alpha[i] = v[i] * inv_det;
+        out.beta[i] = w[i] * inv_det;
+    }
+    out
+}
+
 impl<S: Scalar> RtiMethod<S> for Woop {
     const NAME: &'static str = "woop";
     type Prepared = Prepared<S>;

@@ -2,6 +2,7 @@
 //! instructions chosen at run time.
 
 mod binary;
+mod candidates;
 mod collapse;
 mod dispatch;
 mod kernels;

@@ -9,17 +9,17 @@
 //! worth a visit.
 
 use super::WideBvh;
+use super::candidates::{Candidates, TOGETHER, choose};
 use super::kernels::{Kernel, Lanes, Reach};
 use super::layout::{BLOCK, Child, END, IDS, NODE, Node, TriangleBlock, WIDTH};
 use super::ray_setup::RaySetup;
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
-use photinus_intersect::methods::woop::{self, Started};
 use photinus_profile::ticks;
 
 /// Rays under way at a time.
-const SLOTS: usize = 32;
+pub const SLOTS: usize = 32;
 
 /// Places that a stack needs in a tree with so many levels of nodes: for the end, for all but one of the children of
 /// every node on the way, and for a whole node to be written.
@@ -29,6 +29,7 @@ pub fn stack_places(levels: u32) -> usize {
 
 /// A ray under way.
 #[derive(Clone, Copy)]
+#[repr(align(64))]
 struct Slot {
     setup: RaySetup,
     /// Where the search ends: the end of the ray or the nearest hit.
@@ -37,11 +38,14 @@ struct Slot {
     child: Child,
     /// Index in the batch.
     ray: usize,
-    /// Filled places of the stack.
-    waiting: usize,
+    /// First place of its stack, which holds the end.
+    bottom: usize,
+    /// The place above the last that is filled.
+    top: usize,
 }
 
-const IDLE: Slot = Slot { setup: RaySetup::IDLE, t_max: 0.0, best: Hit::MISS, child: Child::END, ray: 0, waiting: 0 };
+const IDLE: Slot =
+    Slot { setup: RaySetup::IDLE, t_max: 0.0, best: Hit::MISS, child: Child::END, ray: 0, bottom: 0, top: 0 };
 
 /// The stacks of all slots: children that wait, and where the ray enters them.
 struct Stacks {
@@ -56,31 +60,33 @@ impl Stacks {
         Self { places, entries: vec![0.0; places * slots], children: vec![Child::END; places * slots] }
     }
 
-    /// Eight places of a slot's stack.
+    /// Eight places.
     #[inline(always)]
-    fn lanes(&mut self, slot: u8, place: usize) -> Lanes<'_> {
-        let start = usize::from(slot) * self.places + place;
+    fn lanes(&mut self, start: usize) -> Lanes<'_> {
         Lanes {
             entries: self.entries[start..][..WIDTH].as_mut_array().expect("WIDTH long"),
             children: self.children[start..][..WIDTH].as_mut_array().expect("WIDTH long"),
         }
     }
 
-    /// Takes children beyond `t_max` out of a slot's stack and returns how many places are left filled. One by one: the
-    /// places were written eight at a time and across one another, and reading so many at once would wait for that.
+    /// Takes children beyond `t_max` out of a slot's stack and returns how many places are left filled.
     #[inline(always)]
-    fn shorten(&mut self, slot: u8, waiting: usize, t_max: f32) -> usize {
-        let start = usize::from(slot) * self.places;
-        let entries = &mut self.entries[start..][..waiting];
-        let children = &mut self.children[start..][..waiting];
-        let mut kept = 1;
-        for i in 1..waiting {
-            let (entry, child) = (entries[i], children[i]);
-            entries[kept] = entry;
-            children[kept] = child;
-            kept += usize::from(entry <= t_max);
+    fn shorten<K: Kernel>(&mut self, kernel: K, bottom: usize, top: usize, t_max: f32) -> usize {
+        let mut kept = bottom + 1;
+        let mut first = bottom + 1;
+        // At least once: a loop that may not run at all is a branch to be guessed.
+        loop {
+            let (entries, children, mask) = kernel.keep(self.lanes(first), t_max);
+            let left = top - first;
+            let mask = if left < WIDTH { mask & ((1 << left) - 1) } else { mask };
+            let to = self.lanes(kept);
+            (*to.entries, *to.children) = (entries, children);
+            kept += mask.count_ones() as usize;
+            if left <= WIDTH {
+                return kept;
+            }
+            first += WIDTH;
         }
-        kept
     }
 }
 
@@ -111,6 +117,7 @@ struct Walk<'a, K: Kernel, F> {
     next: usize,
     slots: [Slot; SLOTS],
     stacks: Stacks,
+    candidates: Candidates,
     /// Where the children of each kind lie, and how many bytes apart.
     places: [(*const u8, usize); 4],
     states: States,
@@ -131,13 +138,14 @@ impl WideBvh {
             counters.traversal.rays += rays.len() as u64;
         }
         let states = States { slots: [[0; SLOTS]; 4], lens: [0; 4] };
+        let stacks = Stacks::new(self.stack_places, SLOTS.min(rays.len()));
+        let slots = [IDLE; SLOTS];
+        let candidates = Candidates::NONE;
         let nodes = (self.nodes.as_ptr().cast::<u8>(), size_of::<Node>());
         let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
         let ids = (self.ids.as_ptr().cast::<u8>(), size_of::<u32>());
         let places = [nodes, nodes, blocks, ids];
-        let stacks = Stacks::new(self.stack_places, SLOTS.min(rays.len()));
-        let slots = [IDLE; SLOTS];
-        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, places, states, set };
+        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, candidates, places, states, set };
         // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
         // What is set up once for a batch stands before them: the batches that are counted are shorter than most.
         let begun = if COUNT { ticks() } else { 0 };
@@ -166,6 +174,7 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
     #[inline(always)]
     fn start(&mut self) {
         for index in 0..SLOTS.min(self.rays.len()) as u8 {
+            self.slots[usize::from(index)].bottom = usize::from(index) * self.stacks.places;
             self.fill(index);
         }
     }
@@ -184,7 +193,7 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
                 slot.best = Hit::MISS;
                 slot.child = Child::node(0);
                 slot.ray = i;
-                slot.waiting = 1;
+                slot.top = slot.bottom + 1;
                 self.states.push(NODE, index);
                 return;
             }
@@ -192,12 +201,12 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         }
     }
 
-    /// Takes the next of `waiting` children from a slot's stack.
+    /// Takes the child below `top` from a slot's stack.
     #[inline(always)]
-    fn pop(&mut self, index: u8, waiting: usize) {
+    fn pop(&mut self, index: u8, top: usize) {
         let slot = &mut self.slots[usize::from(index) % SLOTS];
-        let child = self.stacks.children[usize::from(index) * self.stacks.places + waiting - 1];
-        slot.waiting = waiting - 1;
+        let child = self.stacks.children[top - 1];
+        slot.top = top - 1;
         slot.child = child;
         let kind = child.kind();
         let (start, size) = self.places[kind];
@@ -214,40 +223,66 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         for &index in &indices[..len] {
             let slot = &mut self.slots[usize::from(index) % SLOTS];
             let node = &self.tree.nodes[slot.child.index()];
-            let place = slot.waiting;
-            let out = self.stacks.lanes(index, place);
-            let count = self.kernel.node(&slot.setup, node, slot.t_max, out);
-            self.pop(index, place + count);
+            let top = slot.top;
+            let count = self.kernel.node(&slot.setup, node, slot.t_max, self.stacks.lanes(top));
+            self.pop(index, top + count);
         }
     }
 
-    /// Filters the triangles of all leaves first, then finishes those that are left, then takes up the rays again:
-    /// what a test says is not known for long, and should not be waited for.
+    /// Filters the triangles of all leaves first, then finishes those that are left, then takes up the rays again: what
+    /// a test says is not known for long, and is nothing that a processor could guess.
     #[inline(always)]
     fn visit_blocks<const ANY: bool, const COUNT: bool>(&mut self, counters: &mut RayCounters) {
         let (indices, len) = self.states.take(BLOCK);
+        self.candidates.len = 0;
         for &index in &indices[..len] {
-            let slot = &mut self.slots[usize::from(index) % SLOTS];
+            let slot = &self.slots[usize::from(index) % SLOTS];
             let block = &self.tree.blocks[slot.child.index()];
             let reach = Reach::new(slot.setup.woop.dir_z, slot.setup.t_min, slot.t_max);
-            let mut mask = self.kernel.block(&slot.setup, &reach, block);
-            let mut hits = 0;
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                if let Some(hit) = lane_hit(&slot.setup.woop, block, lane, slot.setup.t_min, slot.t_max) {
-                    hits += 1;
-                    if hit.beats(&slot.best) {
-                        slot.best = hit;
-                        slot.t_max = hit.t;
-                    }
-                }
-            }
+            self.candidates.add(index, self.kernel.block(&slot.setup, &reach, block));
             if COUNT {
-                counters.add_leaf(block.len(), LeafWork { tests: block.len() as u32, hits });
+                counters.add_leaf(block.len(), LeafWork { tests: block.len() as u32, hits: 0 });
             }
-            self.leave_leaf::<ANY>(index, hits > 0);
         }
+        let mut first = 0;
+        while first < self.candidates.len {
+            let hits = self.finish(first);
+            if COUNT {
+                counters.intersect.hits += hits;
+            }
+            first += TOGETHER;
+        }
+        for &index in &indices[..len] {
+            self.leave_leaf::<ANY>(index);
+        }
+    }
+
+    /// Finishes the next candidates and returns how many are hits.
+    #[inline(always)]
+    fn finish(&mut self, first: usize) -> u64 {
+        let count = (self.candidates.len - first).min(TOGETHER);
+        for i in 0..count {
+            let (index, lane) = self.candidates.at(first + i);
+            let slot = &self.slots[index];
+            let block = &self.tree.blocks[slot.child.index()];
+            let woop = &slot.setup.woop;
+            let sheared = woop.shear_exactly(|vertex, axis| block.vertices[3 * vertex + axis][lane]);
+            self.candidates.shear(i, &sheared, f64::from(woop.dir_z));
+        }
+        let found = self.candidates.finish();
+        let mut hits = 0;
+        for i in 0..count {
+            let (index, lane) = self.candidates.at(first + i);
+            let slot = &mut self.slots[index];
+            let prim = self.tree.blocks[slot.child.index()].ids[lane];
+            let (t, alpha, beta) = (found.t[i] as f32, found.alpha[i] as f32, found.beta[i] as f32);
+            let accepted = (t >= slot.setup.t_min) & (t <= slot.t_max) & t.is_finite();
+            let beats = accepted & ((t < slot.best.t) | ((t == slot.best.t) & (prim < slot.best.prim)));
+            hits += u64::from(accepted);
+            slot.best = choose(beats, Hit { t, alpha, beta, prim }, slot.best);
+            slot.t_max = if beats { t } else { slot.t_max };
+        }
+        hits
     }
 
     #[inline(never)]
@@ -261,18 +296,20 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             if COUNT {
                 counters.add_leaf(ids.len(), work);
             }
-            self.leave_leaf::<ANY>(index, work.hits > 0);
+            self.leave_leaf::<ANY>(index);
         }
     }
 
+    /// Goes on after a leaf, whether or not it was hit: that is a coin tossed for every ray.
     #[inline(always)]
-    fn leave_leaf<const ANY: bool>(&mut self, index: u8, hit: bool) {
+    fn leave_leaf<const ANY: bool>(&mut self, index: u8) {
         let slot = &self.slots[usize::from(index) % SLOTS];
-        let mut waiting = slot.waiting;
-        if hit {
-            waiting = if ANY { 1 } else { self.stacks.shorten(index, waiting, slot.t_max) };
-        }
-        self.pop(index, waiting);
+        let top = match ANY {
+            true if slot.best.is_hit() => slot.bottom + 1,
+            true => slot.top,
+            false => self.stacks.shorten(self.kernel, slot.bottom, slot.top, slot.t_max),
+        };
+        self.pop(index, top);
     }
 
     /// Hands out the hits of rays that have ended and starts others in their slots.
@@ -285,18 +322,4 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             self.fill(index);
         }
     }
-}
-
-/// The hit of one lane, in the ray's interval and no farther than `t_max`.
-#[inline(always)]
-fn lane_hit(ray: &Started<f32>, block: &TriangleBlock, lane: usize, t_min: f32, t_max: f32) -> Option<Hit> {
-    let sheared = ray.shear_exactly(|vertex, axis| block.vertices[3 * vertex + axis][lane]);
-    let hit = woop::finish(&sheared, f64::from(ray.dir_z))?;
-    let t = hit.t as f32;
-    (t >= t_min && t <= t_max && t.is_finite()).then_some(Hit {
-        t,
-        alpha: hit.alpha as f32,
-        beta: hit.beta as f32,
-        prim: block.ids[lane],
-    })
 }

@@ -1,9 +1,9 @@
 //! AVX2: eight lanes in one register.
 
-use super::{Kernel, Lanes, Reach};
+use super::{Kernel, Lanes, Reach, SET_LANES};
 use crate::structure::RayCounters;
 use crate::structures::wide_bvh::WideBvh;
-use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
+use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
@@ -47,24 +47,6 @@ fn trace<const ANY: bool, const COUNT: bool>(
     tree.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
 }
 
-/// For each mask of eight lanes the indices of those that are set, in front.
-static COMPRESS: [[u8; WIDTH]; 256] = {
-    let mut table = [[0; WIDTH]; 256];
-    let mut mask = 0;
-    while mask < 256 {
-        let (mut lane, mut count) = (0, 0);
-        while lane < WIDTH {
-            if mask >> lane & 1 == 1 {
-                table[mask][count] = lane as u8;
-                count += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
-};
-
 impl Kernel for Avx2 {
     #[inline(always)]
     fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
@@ -93,7 +75,7 @@ impl Kernel for Avx2 {
             let children = _mm256_loadu_si256(node.children.as_ptr().cast());
             let children = _mm256_permutevar8x32_epi32(children, order);
             let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as usize;
-            let kept = _mm256_cvtepu8_epi32(_mm_loadl_epi64(COMPRESS[mask].as_ptr().cast()));
+            let kept = _mm256_cvtepu8_epi32(_mm_loadl_epi64(SET_LANES[mask].as_ptr().cast()));
             _mm256_storeu_ps(out.entries.as_mut_ptr(), _mm256_permutevar8x32_ps(entry, kept));
             _mm256_storeu_si256(out.children.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(children, kept));
             mask.count_ones() as usize
@@ -105,8 +87,9 @@ impl Kernel for Avx2 {
         // SAFETY: `self` proves that the machine has AVX2; the loads are of eight words each, and axes are below 3.
         unsafe {
             let [kx, ky, kz] = ray.woop.axes;
-            let origin = [kx, ky, kz].map(|k| _mm256_set1_ps(ray.woop.origin[k]));
-            let shear_by = ray.woop.shear.map(|x| _mm256_set1_ps(x));
+            let spread = |x: f32| _mm256_set1_ps(x);
+            let origin = [spread(ray.woop.origin[kx]), spread(ray.woop.origin[ky]), spread(ray.woop.origin[kz])];
+            let shear_by = [spread(ray.woop.shear[0]), spread(ray.woop.shear[1])];
             let vertices = block.vertices.as_ptr().cast::<f32>();
             let load = |v: usize, k: usize| _mm256_loadu_ps(vertices.add((3 * v + k) * WIDTH));
             let mut x = [_mm256_setzero_ps(); 3];
@@ -140,8 +123,24 @@ impl Kernel for Avx2 {
     }
 
     #[inline(always)]
+    fn keep(self, from: Lanes<'_>, t_max: f32) -> ([f32; WIDTH], [Child; WIDTH], u8) {
+        let (mut entries, mut children) = ([0.0; WIDTH], [Child::END; WIDTH]);
+        // SAFETY: `self` proves that the machine has AVX2; the loads and stores are of eight words each.
+        let mask = unsafe {
+            let old = _mm256_loadu_ps(from.entries.as_ptr());
+            let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(old, _mm256_set1_ps(t_max))) as usize;
+            let kept = _mm256_cvtepu8_epi32(_mm_loadl_epi64(SET_LANES[mask].as_ptr().cast()));
+            _mm256_storeu_ps(entries.as_mut_ptr(), _mm256_permutevar8x32_ps(old, kept));
+            let old = _mm256_loadu_si256(from.children.as_ptr().cast());
+            _mm256_storeu_si256(children.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(old, kept));
+            mask
+        };
+        (entries, children, mask as u8)
+    }
+
+    #[inline(always)]
     fn prefetch(self, start: *const u8) {
-        for line in 0..5 {
+        for line in 0..4 {
             // SAFETY: a prefetch reads nothing that the program could notice, at any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line).cast()) };
         }

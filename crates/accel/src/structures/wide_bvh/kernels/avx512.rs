@@ -4,7 +4,7 @@
 use super::{Kernel, Lanes, Reach};
 use crate::structure::RayCounters;
 use crate::structures::wide_bvh::WideBvh;
-use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
+use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
@@ -89,8 +89,9 @@ impl Kernel for Avx512 {
         // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads are of eight words each, and axes are below 3.
         unsafe {
             let [kx, ky, kz] = ray.woop.axes;
-            let origin = [kx, ky, kz].map(|k| _mm256_set1_ps(ray.woop.origin[k]));
-            let shear_by = ray.woop.shear.map(|x| _mm256_set1_ps(x));
+            let spread = |x: f32| _mm256_set1_ps(x);
+            let origin = [spread(ray.woop.origin[kx]), spread(ray.woop.origin[ky]), spread(ray.woop.origin[kz])];
+            let shear_by = [spread(ray.woop.shear[0]), spread(ray.woop.shear[1])];
             let vertices = block.vertices.as_ptr().cast::<f32>();
             let load = |v: usize, k: usize| _mm256_loadu_ps(vertices.add((3 * v + k) * WIDTH));
             let mut x = [_mm256_setzero_ps(); 3];
@@ -121,8 +122,23 @@ impl Kernel for Avx512 {
     }
 
     #[inline(always)]
+    fn keep(self, from: Lanes<'_>, t_max: f32) -> ([f32; WIDTH], [Child; WIDTH], u8) {
+        let (mut entries, mut children) = ([0.0; WIDTH], [Child::END; WIDTH]);
+        // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads and stores are of eight words each.
+        let mask = unsafe {
+            let old = _mm256_loadu_ps(from.entries.as_ptr());
+            let mask = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(old, _mm256_set1_ps(t_max));
+            _mm256_storeu_ps(entries.as_mut_ptr(), _mm256_maskz_compress_ps(mask, old));
+            let old = _mm256_loadu_si256(from.children.as_ptr().cast());
+            _mm256_storeu_si256(children.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, old));
+            mask
+        };
+        (entries, children, mask)
+    }
+
+    #[inline(always)]
     fn prefetch(self, start: *const u8) {
-        for line in 0..5 {
+        for line in 0..4 {
             // SAFETY: a prefetch reads nothing that the program could notice, at any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line).cast()) };
         }

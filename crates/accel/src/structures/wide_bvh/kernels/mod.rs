@@ -23,9 +23,31 @@ pub trait Kernel: Copy {
     /// Triangles of `block` that the ray may hit within its reach, as a mask of lanes.
     fn block(self, ray: &RaySetup, reach: &Reach, block: &TriangleBlock) -> u32;
 
-    /// Asks for the five cache lines from `start`, a node or a block, to be near soon.
+    /// Of eight places of a stack those that the ray enters at `t_max` at most, in front and in order, and which they are
+    /// as a mask; what lies behind them is left undefined.
+    fn keep(self, from: Lanes<'_>, t_max: f32) -> ([f32; WIDTH], [Child; WIDTH], u8);
+
+    /// Asks for the four cache lines from `start`, a node or most of a block, to be near soon.
     fn prefetch(self, start: *const u8);
 }
+
+/// For each mask of eight lanes the indices of those that are set, in front.
+pub static SET_LANES: [[u8; WIDTH]; 256] = {
+    let mut table = [[0; WIDTH]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < WIDTH {
+            if mask >> lane & 1 == 1 {
+                table[mask][count] = lane as u8;
+                count += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};
 
 /// Eight places of a stack: where the ray enters, and what.
 pub struct Lanes<'a> {

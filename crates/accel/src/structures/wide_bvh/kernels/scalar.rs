@@ -1,7 +1,7 @@
 //! Plain Rust: the twin that the other kernels are tested against.
 
 use super::{Kernel, Lanes, Reach};
-use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
+use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::NO_HIT;
 
@@ -70,6 +70,20 @@ impl Kernel for Scalar {
             mask |= u32::from(used && !beyond && !(negative && positive)) << lane;
         }
         mask
+    }
+
+    #[inline(always)]
+    fn keep(self, from: Lanes<'_>, t_max: f32) -> ([f32; WIDTH], [Child; WIDTH], u8) {
+        let (mut entries, mut children) = ([0.0; WIDTH], [Child::END; WIDTH]);
+        let (mut mask, mut count) = (0, 0);
+        for lane in 0..WIDTH {
+            entries[count % WIDTH] = from.entries[lane];
+            children[count % WIDTH] = from.children[lane];
+            let is_kept = from.entries[lane] <= t_max;
+            mask |= u8::from(is_kept) << lane;
+            count += usize::from(is_kept);
+        }
+        (entries, children, mask)
     }
 
     #[inline(always)]
