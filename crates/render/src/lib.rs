@@ -24,6 +24,7 @@ mod recording;
 mod renderer;
 mod runs;
 mod settings;
+mod sort;
 mod support;
 mod surface;
 pub mod texture;

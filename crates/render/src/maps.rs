@@ -3,6 +3,7 @@
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::counters::{Counters, timed};
 use crate::recording::{search_record, sum};
+use crate::sort::sort_by_key;
 use crate::trace::Tracer;
 use crate::twin::Twin;
 use photinus_geometry::Vec3;
@@ -123,7 +124,7 @@ impl Map {
     /// Sorts estimates by their neighbourhoods where those are of use: for the nearest photons.
     pub fn sort(&self, list: &mut [Estimate], knn: Option<u32>) {
         if knn.is_some() {
-            list.sort_by_cached_key(|e| self.search.neighbourhood(&e.query));
+            sort_by_key(list, |e| self.search.neighbourhood(&e.query));
         }
     }
 

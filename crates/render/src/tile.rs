@@ -234,8 +234,10 @@ impl Tiles<'_> {
             (x0, y0, self.edge.min(width - x0), self.edge.min(height - y0))
         };
         let reach = self.shared.map_or(0, |filter| filter.reach);
+        // One by one: of a run of tiles that a thread has begun no other can take any when it has none left.
         let results: Vec<Option<Made>> = (0..tiles)
             .into_par_iter()
+            .with_max_len(1)
             .map(|index| {
                 if observer.cancelled() {
                     return None;
