@@ -165,6 +165,7 @@ impl EyePass<'_> {
                 places: 1,
                 ray: node.record,
                 offset: point.offset,
+                is_first: node.level == 0,
             });
         }
         if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {

@@ -422,8 +422,10 @@ impl EyePass<'_> {
             max_depth: (self.max_depth - path.depth).min(127),
         };
         let (throughput, offset, ray) = (path.throughput, point.offset, path.record);
-        let mut estimate = Estimate { query, side, scatter, throughput, path: path.pixel, places: 1, ray, offset };
-        if path.depth == 1 {
+        let is_first = path.depth == 1;
+        let mut estimate =
+            Estimate { query, side, scatter, throughput, path: path.pixel, places: 1, ray, offset, is_first };
+        if is_first {
             self.add_companions(path, tile, &mut estimate, &mut estimates.companions);
         }
         estimates.list.push(estimate);
@@ -533,7 +535,7 @@ impl EyePass<'_> {
         counters: &mut Counters,
     ) -> Vec<f32> {
         let Some(pixels) = self.cut_pixels else { return vec![1.0; list.len()] };
-        let sample = self.pass * self.spp + tile.sample;
+        let sample = [tile.sample, self.pass * self.spp + tile.sample];
         let origin = [self.crop[0], self.crop[1]];
         let looker = Looker { world: self.world, kernel, pixels, seed: self.seed, origin, sample };
         let [x0, y0, width, _] = tile.place;

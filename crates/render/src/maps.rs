@@ -45,6 +45,8 @@ pub(crate) struct Estimate {
     pub ray: u32,
     /// How far the surface may be off the place asked about, by rounding; scene units.
     pub offset: f32,
+    /// The camera sees it directly.
+    pub is_first: bool,
 }
 
 /// How the light of photons is scattered to where an estimate is asked for.

@@ -7,19 +7,24 @@
 //! "Simple boundary correction for kernel density estimation", Statistics and Computing 3, 1993).
 //!
 //! Looking costs rays, so the first pass looks at one pixel in four, and at its neighbours where a disc is cut; later passes look
-//! around pixels where the pass before saw a disc cut: radii do not grow.
+//! around pixels where the pass before saw a disc cut: radii do not grow. What the camera sees directly, it sees again in the
+//! next pass: points that were looked at then still count, less the more the radius has shrunk since, and few new ones go on
+//! with their sequence.
 
 use crate::counters::Counters;
-use crate::eye_pass::R2;
 use crate::maps::Estimate;
 use crate::trace::Tracer;
 use crate::world::World;
 use photinus_geometry::{Frame, Hit, Ray, Vec3};
-use photinus_num::{Sampler, StreamKind};
+use photinus_num::{Sampler, StreamKind, unit_f32};
 use photinus_photons::Kernel;
 use photinus_profile::queries::RayKind;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Steps of points that fill the square evenly, as those of [`R2`](crate::eye_pass::R2), in units of 2^-32.
+const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
 
 /// Points of the disc of an estimate that is all there is in its pixel, and of one that hardly counts.
 const MOST_POINTS: f32 = 8.0;
@@ -34,8 +39,8 @@ pub(crate) fn points_for(part: f32) -> u32 {
 /// What a missing point takes off a disc: a little less than its part, as the mean of the inverse of a share that is a matter
 /// of chance is more than the inverse of its mean. A quarter of a point makes up for that: within 0.5 % where half of the disc
 /// is missing, and 2 % where three quarters are.
-fn part(points: u32) -> f32 {
-    (1.0 - 0.25 / points as f32) / points as f32
+fn part(points: f32) -> f32 {
+    (1.0 - 0.25 / points.max(1.0)) / points
 }
 
 /// Edge of the squares of pixels of which the first pass looks at one first; a tile's edge is a multiple.
@@ -56,6 +61,44 @@ const ROUNDING: f32 = 1e-3;
 /// Least cosine between normals of photons and query, as searches have it.
 const LEAST_COSINE: f32 = 0.5;
 
+/// How fast points count less as the radius shrinks: power of the ratio of radii.
+const FADING: i32 = 8;
+/// Points on the same surface of a pixel are no farther apart than this, in radii ...
+const SAME_SURFACE: f32 = 0.5;
+/// ... and no farther off its plane.
+const SAME_PLANE: f32 = 0.05;
+/// A disc that lost less is whole.
+const LEAST_LOSS: f32 = 0.01;
+
+/// What passes before saw of the disc around what the camera sees directly in a pixel.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    position: Vec3,
+    radius: f32,
+    /// Points looked at, as much as they count by now; 0 where none were.
+    points: f32,
+    /// What of them is lost.
+    lost: f32,
+    /// Points of the pixel's sequence that have been used.
+    used: u32,
+}
+
+impl Seen {
+    /// The same for an estimate over `radius`, if it lies on the same surface.
+    fn faded(self, e: &Estimate, radius: f32) -> Self {
+        let away = e.query.position - self.position;
+        let is_same = self.points > 0.0
+            && away.length() <= SAME_SURFACE * radius
+            && away.dot(e.query.normal).abs() <= SAME_PLANE * radius + e.offset;
+        let fade = if is_same { (radius / self.radius).min(1.0).powi(FADING) } else { 0.0 };
+        Self { position: e.query.position, radius, points: self.points * fade, lost: self.lost * fade, used: self.used }
+    }
+
+    fn is_cut(&self) -> bool {
+        self.lost > LEAST_LOSS * self.points
+    }
+}
+
 /// Pixels whose estimates are near something that cuts their discs.
 pub(crate) struct CutPixels {
     width: usize,
@@ -64,6 +107,9 @@ pub(crate) struct CutPixels {
     /// By the pass before, row by row.
     before: Vec<bool>,
     now: Vec<AtomicBool>,
+    seen: Vec<Seen>,
+    /// What this pass adds, by pixel; those of a pixel stand in its order.
+    new: Mutex<Vec<(u32, Seen)>>,
 }
 
 impl CutPixels {
@@ -71,19 +117,34 @@ impl CutPixels {
     pub fn new(width: u32, height: u32) -> Self {
         let count = width as usize * height as usize;
         let now = (0..count).map(|_| AtomicBool::new(false)).collect();
-        Self { width: width as usize, is_known: false, before: vec![false; count], now }
+        Self {
+            width: width as usize,
+            is_known: false,
+            before: vec![false; count],
+            now,
+            seen: vec![Seen::default(); count],
+            new: Mutex::default(),
+        }
     }
 
     /// Ends a pass: what it saw steers the next.
     pub fn advance(&mut self) {
-        for (before, now) in self.before.iter_mut().zip(&mut self.now) {
-            *before = std::mem::take(now.get_mut());
+        for (pixel, seen) in self.take_new() {
+            self.seen[pixel as usize] = seen;
+        }
+        for ((before, now), seen) in self.before.iter_mut().zip(&mut self.now).zip(&self.seen) {
+            *before = std::mem::take(now.get_mut()) || (*before && seen.is_cut());
         }
         self.is_known = true;
     }
 
+    fn take_new(&mut self) -> Vec<(u32, Seen)> {
+        std::mem::take(self.new.get_mut().unwrap_or_else(PoisonError::into_inner))
+    }
+
     /// Forgets what an unfinished pass saw: the next one begins as that did.
     pub fn forget(&mut self) {
+        self.take_new();
         self.now.iter_mut().for_each(|now| *now.get_mut() = false);
     }
 
@@ -158,8 +219,8 @@ pub(crate) struct Looker<'a> {
     pub seed: u64,
     /// The window's first pixel of the film.
     pub origin: [u32; 2],
-    /// Number of the sample over all passes.
-    pub sample: u32,
+    /// Number of the sample in its pass, and over all passes.
+    pub sample: [u32; 2],
 }
 
 impl Looker<'_> {
@@ -197,28 +258,46 @@ impl Looker<'_> {
         tracer: &mut Tracer,
         counters: &mut Counters,
     ) {
-        let mut losses = vec![0.0; estimates.len()];
-        let mut counts = vec![0; estimates.len()];
+        let wanted: Vec<usize> = (0..estimates.len()).filter(|&i| is_wanted(pixel(estimates[i].path))).collect();
+        let mut seen: Vec<Seen> = estimates.iter().zip(looks).map(|_| Seen::default()).collect();
+        for &i in &wanted {
+            let (e, before) = (&estimates[i], self.pixels.index(pixel(estimates[i].path)));
+            let before = if e.is_first { self.pixels.seen[before] } else { Seen::default() };
+            seen[i] = before.faded(e, looks[i].radius);
+        }
         // Where something is missing, more points tell how much.
         for stage in [1, MORE_POINTS] {
             let mut points = Vec::new();
-            for (i, e) in estimates.iter().enumerate() {
-                if is_wanted(pixel(e.path)) && (stage == 1 || losses[i] > 0.0) {
-                    let all = looks[i].count * stage;
-                    self.add_points(i, e, looks[i].radius, counts[i]..all, pixel(e.path), &mut points);
-                    counts[i] = all;
+            for &i in wanted.iter().filter(|i| looks[**i].count > 0) {
+                let seen = &mut seen[i];
+                if stage == 1 || seen.lost > 0.0 {
+                    let missing = ((looks[i].count * stage) as f32 - seen.points).ceil() as u32;
+                    let new = if stage == 1 { missing.max(1) } else { missing };
+                    self.add_points(
+                        i,
+                        &estimates[i],
+                        looks[i].radius,
+                        seen.used..seen.used + new,
+                        pixel(estimates[i].path),
+                        &mut points,
+                    );
+                    seen.used += new;
+                    seen.points += new as f32;
                 }
             }
             for (i, lost) in self.lost(estimates, points, tracer, counters) {
-                losses[i] += lost;
+                seen[i].lost += lost;
                 if lost == 1.0 {
                     self.pixels.saw_cut(pixel(estimates[i].path));
                 }
             }
         }
-        for ((share, lost), count) in shares.iter_mut().zip(losses).zip(counts).filter(|(_, count)| *count > 0) {
-            *share = (1.0 - lost * part(count)).clamp(LEAST_SHARE, MOST_SHARE);
+        for &i in wanted.iter().filter(|i| looks[**i].count > 0) {
+            shares[i] = (1.0 - seen[i].lost * part(seen[i].points)).clamp(LEAST_SHARE, MOST_SHARE);
         }
+        let first = wanted.into_iter().filter(|&i| estimates[i].is_first && seen[i].points > 0.0);
+        let new = first.map(|i| (self.pixels.index(pixel(estimates[i].path)) as u32, seen[i]));
+        self.pixels.new.lock().unwrap_or_else(PoisonError::into_inner).extend(new);
     }
 
     fn add_points(
@@ -232,10 +311,13 @@ impl Looker<'_> {
     ) {
         let frame = Frame::from_normal(e.query.normal);
         let stream = u64::from(self.origin[1] + y) << 32 | u64::from(self.origin[0] + x);
-        let shift = Sampler::new(self.seed, StreamKind::Support, stream, self.sample).next_2d();
+        // One sequence for all that the camera sees directly in a pixel, others for what else is seen there.
+        let [own, sample] = self.sample;
+        let shift =
+            Sampler::new(self.seed, StreamKind::Support, stream, if e.is_first { own } else { !sample }).next_2d();
         for i in range {
-            let step = |u: f32, by: f32| (u + i as f32 * by).fract();
-            let [u, v] = [step(shift[0], R2[0]), step(shift[1], R2[1])];
+            let step = |u: f32, by: u32| (u + unit_f32(i.wrapping_mul(by))).fract();
+            let [u, v] = [step(shift[0], STEPS[0]), step(shift[1], STEPS[1])];
             // The part of the kernel's integral within a distance d: d^2 / r^2 for the constant one, 2 s - s^2 of that for
             // Epanechnikov's.
             let s = if self.kernel == Kernel::Epanechnikov { 1.0 - (1.0 - u).sqrt() } else { u };
@@ -247,7 +329,7 @@ impl Looker<'_> {
                 depth_sq: (radius * radius * (1.0 - s)).max(0.0),
                 height: (radius * HEIGHT).max(e.offset),
                 offset: e.offset,
-                draws: Sampler::new(self.seed, StreamKind::Support, stream | u64::from(i + 1) << 52, self.sample),
+                draws: Sampler::new(self.seed, StreamKind::Support, stream | u64::from(i + 1) << 52, sample),
                 is_covered: false,
                 at: 0.0,
                 share: 0.0,
