@@ -128,6 +128,8 @@ struct Shadow {
     /// Record of the ray that led here.
     record: u32,
     pixel: u32,
+    /// Where it counts for the choice of lights.
+    slot: Option<u32>,
     diffuse: (Vec3, Part),
     glossy: (Vec3, Part),
 }
@@ -259,6 +261,9 @@ impl EyePass<'_> {
             tracer.ask(asked.shadows.iter().map(|s| (RayKind::Shadow, s.record)));
             tracer.visibility(&shadow_rays, &mut visible, counters);
             for (shadow, &share) in asked.shadows.iter().zip(&visible) {
+                if let Some(slot) = shadow.slot {
+                    self.lights.saw(slot, share > 0.0);
+                }
                 if share > 0.0 {
                     tile.add(shadow.pixel, shadow.diffuse.1, shadow.diffuse.0 * share);
                     tile.add(shadow.pixel, shadow.glossy.1, shadow.glossy.0 * share);
@@ -397,6 +402,7 @@ impl EyePass<'_> {
                 ray: shadow_ray(point, light.dir, light.target),
                 record: path.record,
                 pixel: path.pixel,
+                slot: self.lights.slot(path.last_place, light.item),
                 diffuse,
                 glossy,
             });

@@ -283,12 +283,14 @@ impl<'w> Renderer<'w> {
                 self.counters += counters;
                 self.film.add(buffer);
                 self.partial = None;
+                self.lights.keep_findings();
                 if let Some(pixels) = &mut self.cut_pixels {
                     pixels.advance();
                 }
                 Ok(())
             }
             Err(cancelled) => {
+                self.lights.forget_findings();
                 if let Some(pixels) = &mut self.cut_pixels {
                     pixels.forget();
                 }

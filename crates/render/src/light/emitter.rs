@@ -218,11 +218,12 @@ impl Emitter {
 }
 
 fn of_surface(light: &ShiningPoint, dir: Vec3, pdf: f32) -> LightSample {
-    LightSample { dir, target: Some(light.ray_origin(-dir)), radiance: light.radiance_to(-dir), pdf, delta: false }
+    let (target, radiance) = (Some(light.ray_origin(-dir)), light.radiance_to(-dir));
+    LightSample { dir, target, radiance, pdf, delta: false, item: 0 }
 }
 
 fn without_area(dir: Vec3, position: Vec3, radiance: Vec3) -> LightSample {
-    LightSample { dir, target: Some(position), radiance, pdf: 1.0, delta: true }
+    LightSample { dir, target: Some(position), radiance, pdf: 1.0, delta: true, item: 0 }
 }
 
 fn lambertian(light: &ShiningPoint, u: [f32; 2], area: f32) -> (Ray, Vec3) {

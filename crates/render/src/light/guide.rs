@@ -1,15 +1,17 @@
-//! Which lights matter where: a choice of lights by place, learned from shadow rays before the first pass.
+//! Which lights matter where: a choice of lights by place, learned from shadow rays before the first pass and in all passes.
 //!
 //! Visible points are grouped by position and normal; for each group and each item of the lights a few shadow rays say
-//! how much light arrives. Items are then chosen in proportion to the root of the mean square of what arrives, which is
-//! least noisy where an item is partly hidden (Rath et al. 2020, "Variance-aware path guiding", section 3). A share
-//! of the choice by power alone is mixed in, so that nothing that shines is ever missed.
+//! how much light would arrive and how often it does, and those of each pass add to the latter. Items are then chosen in
+//! proportion to the root of the mean square of what arrives, which is least noisy where an item is partly hidden (Rath et
+//! al. 2020, "Variance-aware path guiding", section 3). A share of the choice by power alone is mixed in, so that nothing
+//! that shines is ever missed.
 
 use super::alias::AliasTable;
 use super::clusters::widest;
 use super::emitter::mean;
 use super::lights::{Item, Lights};
 use super::sky_view::SkyView;
+use super::tally::{Count, Tally};
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
 use crate::pilot::VisiblePoint;
@@ -30,8 +32,12 @@ const RAYS: u32 = 4;
 const RAYS_UNSEEN: u32 = 1;
 /// Share of the choice by power alone.
 const BY_POWER: f32 = 0.1;
-/// Shares of a group's own findings, those of the two groups that it was cut from together, and those of four.
-const BLEND: [f32; 3] = [0.6, 0.25, 0.15];
+/// As many rays does what is known of the groups around count as much as, in what is known of a group.
+const AROUND: f32 = 4.0;
+/// Rays that got through, and rays, as if they had been seen before any was sent.
+const BEFORE: [f32; 2] = [0.05, 1.0];
+/// Findings are worth a new choice when so many times as many rays have been sent.
+const NEWS: f64 = 1.15;
 /// Items that send less than this share of the light that may reach a group are not asked for.
 const FAINT: f32 = 1e-3;
 /// Cosine that is added to every surface's: rough and two-sided ones see light from aslant and behind.
@@ -60,7 +66,7 @@ struct Extent {
 }
 
 /// The learned choice.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct LightGuide {
     nodes: Vec<Node>,
     extents: Vec<Extent>,
@@ -68,6 +74,18 @@ pub(crate) struct LightGuide {
     tables: Vec<AliasTable>,
     /// Distance that counts as much as a difference in normals of 1.
     scale: f32,
+    items: usize,
+    /// Root of the mean square of what would arrive if nothing were in between, by group and item.
+    clear: Vec<f32>,
+    tally: Tally,
+    /// Rays that the tables are made of.
+    rays: u64,
+}
+
+/// What is asked before the first pass, for one group, by item.
+struct Look {
+    clear: Vec<f32>,
+    counts: Vec<Count>,
 }
 
 impl LightGuide {
@@ -86,21 +104,31 @@ impl LightGuide {
             return Ok(None);
         }
         let scale = 0.5 * lights.region().radius;
-        let mut guide = Self { nodes: Vec::new(), extents: Vec::new(), tables: Vec::new(), scale };
+        let mut guide = Self {
+            nodes: Vec::new(),
+            extents: Vec::new(),
+            tables: Vec::new(),
+            scale,
+            items: lights.items(),
+            clear: Vec::new(),
+            tally: Tally::default(),
+            rays: 0,
+        };
         let mut groups: Vec<Vec<VisiblePoint>> = Vec::new();
         let budget = (RAYS_PER_PIXEL * pixels).clamp(BUDGET[0], BUDGET[1]);
         let most_groups = (budget / (lights.items() * RAYS as usize)).max(1);
         // Cuts in the middle of space leave groups half full.
         let leaf = LEAF.max(2 * points.len() / most_groups);
         guide.split(points.to_vec(), leaf, &mut groups);
-        let found: Option<Vec<Vec<f32>>> = groups
+        let looks: Option<Vec<Look>> = groups
             .par_iter()
             .enumerate()
-            .map(|(g, group)| (!observer.cancelled()).then(|| arriving(world, lights, group, view, seed, g as u64)))
+            .map(|(g, group)| (!observer.cancelled()).then(|| look(world, lights, group, view, seed, g as u64)))
             .collect();
-        let found = found.ok_or(Cancelled)?;
-        let shares = guide.shares(found);
-        guide.tables = guide.tables(&shares);
+        let looks = looks.ok_or(Cancelled)?;
+        guide.clear = looks.iter().flat_map(|look| look.clear.iter().copied()).collect();
+        guide.tally = Tally::new(looks.into_iter().flat_map(|look| look.counts).collect());
+        guide.choose_anew();
         Ok(Some(guide))
     }
 
@@ -137,48 +165,68 @@ impl LightGuide {
         self.nodes.len() as u32 - 1
     }
 
-    /// Findings of each node as shares of the items: a group's own, or the mean of the two below.
-    fn shares(&self, found: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
-        let mut shares: Vec<Vec<f32>> = vec![Vec::new(); self.nodes.len()];
-        let mut found: Vec<Option<Vec<f32>>> = found.into_iter().map(Some).collect();
-        // Children stand behind their parents.
-        for node in (0..self.nodes.len()).rev() {
-            let mut sum = match self.nodes[node] {
-                Node::Leaf(group) => found[group as usize].take().unwrap_or_default(),
-                Node::Split { children: [low, high], .. } => {
-                    shares[low as usize].iter().zip(&shares[high as usize]).map(|(a, b)| a + b).collect()
-                }
-            };
-            let total: f32 = sum.iter().sum();
-            if total > 0.0 {
-                sum.iter_mut().for_each(|s| *s /= total);
-            }
-            shares[node] = sum;
+    /// Adds the findings of the pass that is over.
+    pub fn keep(&mut self) {
+        self.tally.keep();
+        let rays: u64 = self.tally.known().iter().map(|count| u64::from(count.asked)).sum();
+        if rays as f64 > NEWS * self.rays as f64 {
+            self.choose_anew();
         }
-        shares
     }
 
-    /// The table of each group, from the shares of its node and of the two above.
-    fn tables(&self, shares: &[Vec<f32>]) -> Vec<AliasTable> {
+    /// Drops the findings of the pass that was stopped.
+    pub fn forget(&mut self) {
+        self.tally.forget();
+    }
+
+    /// Where [`Self::add`] counts a ray from a place to an item; none away from all groups.
+    #[inline]
+    pub fn slot(&self, place: Place, item: usize) -> Option<u32> {
+        (place != Place::ANY).then(|| place.0 * self.items as u32 + item as u32)
+    }
+
+    /// Counts a shadow ray that did or did not get through.
+    #[inline]
+    pub fn add(&self, slot: u32, reached: bool) {
+        self.tally.add(slot as usize, reached);
+    }
+
+    /// Makes the tables of all that is known.
+    fn choose_anew(&mut self) {
+        let (known, items) = (self.tally.known(), self.items);
+        self.rays = known.iter().map(|count| u64::from(count.asked)).sum();
+        // Children stand behind their parents.
+        let mut counts: Vec<Vec<Count>> = vec![Vec::new(); self.nodes.len()];
+        for node in (0..self.nodes.len()).rev() {
+            counts[node] = match self.nodes[node] {
+                Node::Leaf(group) => known[group as usize * items..][..items].to_vec(),
+                Node::Split { children: [low, high], .. } => {
+                    let mut sum = counts[low as usize].clone();
+                    sum.iter_mut().zip(&counts[high as usize]).for_each(|(sum, count)| *sum += *count);
+                    sum
+                }
+            };
+        }
+        let part =
+            |[reached, asked]: [f32; 2], count: &Count| (count.reached as f32 + reached) / (count.asked as f32 + asked);
         let mut tables = vec![AliasTable::default(); self.extents.len()];
-        let mut open = vec![(0u32, 0u32, 0u32)];
-        while let Some((node, parent, grandparent)) = open.pop() {
+        let mut open = vec![(0u32, counts[0].iter().map(|count| part(BEFORE, count)).collect::<Vec<f32>>())];
+        while let Some((node, around)) = open.pop() {
+            let visible = counts[node as usize].iter().zip(&around);
+            let visible: Vec<f32> = visible.map(|(count, v)| part([AROUND * v, AROUND], count)).collect();
             match self.nodes[node as usize] {
-                Node::Split { children, .. } => open.extend(children.map(|child| (child, node, parent))),
+                Node::Split { children, .. } => open.extend(children.map(|child| (child, visible.clone()))),
                 Node::Leaf(group) => {
-                    let mut weights = vec![0.0f64; shares[0].len()];
-                    for (from, part) in [node, parent, grandparent].into_iter().zip(BLEND) {
-                        for (weight, &share) in weights.iter_mut().zip(&shares[from as usize]) {
-                            *weight += f64::from(part * share);
-                        }
-                    }
+                    let clear = &self.clear[group as usize * items..][..items];
+                    let weights: Vec<f64> =
+                        clear.iter().zip(&visible).map(|(clear, v)| f64::from(clear * v.sqrt())).collect();
                     if weights.iter().any(|&w| w > 0.0) {
                         tables[group as usize] = AliasTable::new(&weights);
                     }
                 }
             }
         }
-        tables
+        self.tables = tables;
     }
 
     /// The group of a point with its normal; [`Place::ANY`] away from all that was looked at.
@@ -222,7 +270,10 @@ impl LightGuide {
     /// Bytes of the tables.
     pub fn bytes(&self) -> usize {
         let items: usize = self.tables.iter().map(AliasTable::len).sum();
-        items * 12 + self.nodes.len() * (size_of::<Node>() + size_of::<Extent>() + size_of::<AliasTable>())
+        items * 12
+            + self.clear.len() * size_of::<f32>()
+            + self.tally.bytes()
+            + self.nodes.len() * (size_of::<Node>() + size_of::<Extent>() + size_of::<AliasTable>())
     }
 }
 
@@ -231,17 +282,16 @@ fn key(position: Vec3, normal: Vec3, scale: f32) -> [f32; 6] {
     [position.x, position.y, position.z, n.x, n.y, n.z]
 }
 
-/// Root of the mean square of what arrives at the points of a group, for each item.
-fn arriving(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyView, seed: u64, index: u64) -> Vec<f32> {
+/// How much of each item would arrive at the points of a group, and how often a few rays do.
+fn look(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyView, seed: u64, index: u64) -> Look {
     let items = lights.items();
     let (mut rays, mut asked) = (Vec::new(), Vec::new());
-    let mut weight = vec![0.0f32; items];
+    let mut squares = vec![0.0f32; items];
     for item in (0..items).filter(|&item| lights.item_probability(item) > 0.0) {
         let count = match lights.item(item) {
             Item::Sky(bin) if !view.reaches(bin) => RAYS_UNSEEN,
             _ => RAYS,
         };
-        weight[item] = 1.0 / count as f32;
         let stream = 3 << 40 | index << 20 | item as u64;
         for i in 0..count {
             let mut sampler = Sampler::new(seed, StreamKind::Pilot, stream, i);
@@ -251,29 +301,26 @@ fn arriving(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyVi
             let Some(light) = lights.sample_item(world, origin, item, choice, u) else { continue };
             let cos = point.normal.dot(light.dir).max(0.0) + ASLANT;
             let value = mean(light.radiance) as f32 * cos / light.pdf;
-            asked.push((item, value));
+            squares[item] += value * value / count as f32;
+            asked.push(item);
             rays.push(match light.target {
                 Some(target) => Ray { origin, t_min: 0.0, dir: target - origin, t_max: 1.0 },
                 None => Ray::new(origin, light.dir),
             });
         }
     }
-    let mut clear = vec![0.0f32; items];
-    asked.iter().for_each(|&(item, value)| clear[item] += value * weight[item]);
+    let clear: Vec<f32> = squares.into_iter().map(|s| if s.is_finite() { s.sqrt() } else { 0.0 }).collect();
     let least = FAINT * clear.iter().sum::<f32>();
-    let mut slot = 0;
-    rays.retain(|_| {
-        slot += 1;
-        clear[asked[slot - 1].0] >= least
-    });
-    asked.retain(|&(item, _)| clear[item] >= least);
+    let clear: Vec<f32> = clear.into_iter().map(|c| if c >= least { c } else { 0.0 }).collect();
+    let (rays, asked): (Vec<Ray>, Vec<usize>) =
+        rays.into_iter().zip(asked).filter(|(_, item)| clear[*item] > 0.0).unzip();
     let mut visible = Vec::new();
     Tracer::new(world, Twin::OFF).visibility(&rays, &mut visible, &mut Counters::default());
-    let mut squares = vec![0.0f32; items];
-    for (&(item, value), &share) in asked.iter().zip(&visible) {
-        squares[item] += value * value * share * weight[item];
+    let mut counts = vec![Count::default(); items];
+    for (item, share) in asked.into_iter().zip(visible) {
+        counts[item] += Count { asked: 1, reached: u32::from(share > 0.0) };
     }
-    squares.into_iter().map(|s| if s.is_finite() { s.sqrt() } else { 0.0 }).collect()
+    Look { clear, counts }
 }
 
 #[cfg(test)]

@@ -37,6 +37,8 @@ pub struct LightSample {
     pub pdf: f32,
     /// The light cannot be hit by chance.
     pub delta: bool,
+    /// Number of the item that was chosen.
+    pub(crate) item: u32,
 }
 
 /// A photon as it leaves its light.
@@ -287,6 +289,32 @@ impl Lights {
         self.guide.as_ref().map_or(Place::ANY, |guide| guide.place(position, normal))
     }
 
+    /// Where a shadow ray from a place to an item counts, for [`Self::saw`].
+    pub(crate) fn slot(&self, place: Place, item: u32) -> Option<u32> {
+        self.guide.as_ref().and_then(|guide| guide.slot(place, item as usize))
+    }
+
+    /// Counts a shadow ray that did or did not get through.
+    pub(crate) fn saw(&self, slot: u32, reached: bool) {
+        if let Some(guide) = &self.guide {
+            guide.add(slot, reached);
+        }
+    }
+
+    /// A pass is over: what its shadow rays found steers those of the next.
+    pub(crate) fn keep_findings(&mut self) {
+        if let Some(guide) = &mut self.guide {
+            guide.keep();
+        }
+    }
+
+    /// A pass was stopped: it begins again as if it had not been.
+    pub(crate) fn forget_findings(&mut self) {
+        if let Some(guide) = &mut self.guide {
+            guide.forget();
+        }
+    }
+
     fn choose(&self, place: Place, u: f32) -> (usize, f32, f32) {
         match &self.guide {
             Some(guide) => guide.choose(&self.table, place, u),
@@ -336,7 +364,7 @@ impl Lights {
             return None;
         }
         let sample = self.sample_item(world, from, item, rest, u)?;
-        Some(LightSample { pdf: sample.pdf * probability, ..sample })
+        Some(LightSample { pdf: sample.pdf * probability, item: item as u32, ..sample })
     }
 
     /// A point on one item as seen from `from`; the density leaves out the choice of the item. The item must have
@@ -358,7 +386,7 @@ impl Lights {
             }
             Item::Distant(i) => {
                 let Distant { direction, irradiance } = self.distant[i];
-                LightSample { dir: -direction, target: None, radiance: irradiance, pdf: 1.0, delta: true }
+                LightSample { dir: -direction, target: None, radiance: irradiance, pdf: 1.0, delta: true, item: 0 }
             }
             Item::Sky(bin) => {
                 let (dir, radiance, pdf) = match &self.pool {
@@ -372,7 +400,7 @@ impl Lights {
                         (dir, sky.radiance(dir), pdf)
                     }
                 };
-                LightSample { dir, target: None, radiance, pdf, delta: false }
+                LightSample { dir, target: None, radiance, pdf, delta: false, item: 0 }
             }
         };
         let useful = sample.dir.is_finite()

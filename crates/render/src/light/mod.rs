@@ -16,6 +16,7 @@ mod panel;
 mod sky_pool;
 mod sky_view;
 mod sphere;
+mod tally;
 
 pub(crate) use anchors::{Anchor, anchors};
 pub(crate) use area::cosine_hemisphere;
