@@ -99,7 +99,8 @@ impl<'w> Renderer<'w> {
         } else {
             SkyView::new()
         };
-        let lights = Lights::new(world, pilot::visible_region(world, &points), &view);
+        let mut lights = Lights::new(world, pilot::visible_region(world, &points), &view);
+        lights.begin_pass(settings.seed, 0);
         // Only shadow rays choose by place, and the thesis's renderer sends none.
         let guide = match settings.mode {
             Mode::Direct => None,

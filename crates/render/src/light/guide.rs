@@ -23,17 +23,19 @@ use photinus_num::{Sampler, StreamKind};
 use rayon::prelude::*;
 
 /// Points of a group, where the budget of rays does not ask for more.
-const LEAF: usize = 16;
+const LEAF: usize = 4;
 /// Shadow rays to learn from, for each pixel, and bounds of their number.
 const RAYS_PER_PIXEL: usize = 4;
 const BUDGET: [usize; 2] = [100_000, 2_000_000];
-/// Shadow rays for each group and item, and those for parts of the sky that nothing was seen to reach.
-const RAYS: u32 = 4;
-const RAYS_UNSEEN: u32 = 1;
+/// Shadow rays for each group and item, and how many look at what would arrive: most of them without asking what is in between.
+const RAYS: u32 = 1;
+const LOOKS: u32 = 4;
+/// Looks at parts of the sky that nothing was seen to reach.
+const LOOKS_UNSEEN: u32 = 1;
 /// Share of the choice by power alone.
 const BY_POWER: f32 = 0.1;
 /// As many rays does what is known of the groups around count as much as, in what is known of a group.
-const AROUND: f32 = 4.0;
+const AROUND: f32 = 16.0;
 /// Rays that got through, and rays, as if they had been seen before any was sent.
 const BEFORE: [f32; 2] = [0.05, 1.0];
 /// Findings are worth a new choice when so many times as many rays have been sent.
@@ -289,8 +291,8 @@ fn look(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyView, 
     let mut squares = vec![0.0f32; items];
     for item in (0..items).filter(|&item| lights.item_probability(item) > 0.0) {
         let count = match lights.item(item) {
-            Item::Sky(bin) if !view.reaches(bin) => RAYS_UNSEEN,
-            _ => RAYS,
+            Item::Sky(bin) if !view.reaches(bin) => LOOKS_UNSEEN,
+            _ => LOOKS,
         };
         let stream = 3 << 40 | index << 20 | item as u64;
         for i in 0..count {
@@ -302,11 +304,13 @@ fn look(world: &World, lights: &Lights, group: &[VisiblePoint], view: &SkyView, 
             let cos = point.normal.dot(light.dir).max(0.0) + ASLANT;
             let value = mean(light.radiance) as f32 * cos / light.pdf;
             squares[item] += value * value / count as f32;
-            asked.push(item);
-            rays.push(match light.target {
-                Some(target) => Ray { origin, t_min: 0.0, dir: target - origin, t_max: 1.0 },
-                None => Ray::new(origin, light.dir),
-            });
+            if i < RAYS {
+                asked.push(item);
+                rays.push(match light.target {
+                    Some(target) => Ray { origin, t_min: 0.0, dir: target - origin, t_max: 1.0 },
+                    None => Ray::new(origin, light.dir),
+                });
+            }
         }
     }
     let clear: Vec<f32> = squares.into_iter().map(|s| if s.is_finite() { s.sqrt() } else { 0.0 }).collect();
