@@ -166,6 +166,7 @@ impl EyePass<'_> {
                 ray: node.record,
                 offset: point.offset,
                 is_first: node.level == 0,
+                scale: 1.0,
             });
         }
         if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {

@@ -7,12 +7,13 @@ use crate::camera::CameraModel;
 use crate::companions::SHIFTS;
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
+use crate::cut_pixels::CutPixels;
 use crate::film::{Aov, FilmLayout};
 use crate::film_filter::{FilterSampler, SharedFilter};
 use crate::light::{Lights, Place};
 use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps};
 use crate::recording::NOT_YET;
-use crate::support::{CutPixels, Look, Looker, points_for};
+use crate::support::{Look, Looker, points_for};
 use crate::tile::{Part, Tile, Tiles};
 use crate::trace::{Tracer, shadow_ray};
 use crate::twin::{Queries, Twin};
@@ -429,10 +430,24 @@ impl EyePass<'_> {
         };
         let (throughput, offset, ray) = (path.throughput, point.offset, path.record);
         let is_first = path.depth == 1;
-        let mut estimate =
-            Estimate { query, side, scatter, throughput, path: path.pixel, places: 1, ray, offset, is_first };
+        let mut estimate = Estimate {
+            query,
+            side,
+            scatter,
+            throughput,
+            path: path.pixel,
+            places: 1,
+            ray,
+            offset,
+            is_first,
+            scale: 1.0,
+        };
         if is_first {
             self.add_companions(path, tile, &mut estimate, &mut estimates.companions);
+        }
+        if let (true, Some(pixels), Some(maps)) = (is_first, self.cut_pixels, self.maps) {
+            let [x0, y0, w, _] = tile.place;
+            estimate.scale = pixels.scale([x0 + path.pixel % w, y0 + path.pixel / w], &estimate, maps.global.radius);
         }
         estimates.list.push(estimate);
         if !self.probe {
@@ -549,7 +564,7 @@ impl EyePass<'_> {
         let look = |(e, found): (&Estimate, &Estimated)| {
             let mine = found.radiance.element_sum();
             let others = tile.light(e.path).element_sum();
-            Look { radius: found.radius, count: points_for(mine / (mine + others)) }
+            Look { radius: found.radius, density: found.density, count: points_for(mine / (mine + others)) }
         };
         let looks: Vec<Look> = list.iter().zip(found).map(look).collect();
         looker.shares(list, &looks, pixel, tracer, counters)

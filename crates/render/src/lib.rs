@@ -10,6 +10,7 @@ mod caustic_plan;
 mod companions;
 mod control;
 mod counters;
+mod cut_pixels;
 mod direct;
 mod eye_pass;
 mod film;

@@ -47,6 +47,8 @@ pub(crate) struct Estimate {
     pub offset: f32,
     /// The camera sees it directly.
     pub is_first: bool,
+    /// Part of the radius of the map of all light that it is made over, 0 to 1.
+    pub scale: f32,
 }
 
 /// How the light of photons is scattered to where an estimate is asked for.
@@ -181,7 +183,7 @@ impl Map {
         scratch.queries.clear();
         scratch.slots.clear();
         for (i, e) in estimates.iter().enumerate() {
-            let query = GatherQuery { radius: self.radius_for(e.query.radius), ..e.query };
+            let query = GatherQuery { radius: self.radius_for(e), ..e.query };
             match e.scatter {
                 Scatter::Constant(_) => {
                     scratch.queries.push(query);
@@ -268,8 +270,9 @@ impl Map {
 
     /// The map's radius, or the pixel's where that is wider, up to three times the map's so that far pixels do not
     /// gather everything.
-    fn radius_for(&self, pixel: f32) -> f32 {
-        self.radius.max(pixel.min(3.0 * self.radius))
+    fn radius_for(&self, e: &Estimate) -> f32 {
+        let scale = if self.kind == MapKind::Global { e.scale } else { 1.0 };
+        (self.radius * scale).max(e.query.radius.min(3.0 * self.radius))
     }
 
     /// Scattering that depends on where the photons come from: each photon by itself. The twin finds all of them first,

@@ -4,6 +4,7 @@ use crate::camera::CameraModel;
 use crate::caustic_plan::CausticPlan;
 use crate::control::{Cancelled, Observer, Phase};
 use crate::counters::Counters;
+use crate::cut_pixels::CutPixels;
 use crate::direct::DEFAULT_LEVELS;
 use crate::eye_pass::{EyePass, TILE};
 use crate::film::{Aov, Film, FilmLayout};
@@ -14,7 +15,6 @@ use crate::memory::{Ahead, RenderMemory};
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
-use crate::support::CutPixels;
 use crate::world::World;
 use photinus_num::StreamKind;
 use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError};
@@ -208,6 +208,7 @@ impl<'w> Renderer<'w> {
             }),
             stored: self.stored,
             maps_once: matches!(self.settings.mode, Mode::Gather | Mode::Direct),
+            marks: self.cut_pixels.as_ref().map_or(0, CutPixels::bytes) as u64,
             lights: (self.lights.bytes() + self.caustics.as_ref().map_or(0, |plan| plan.guide.bytes())) as u64,
         })
     }

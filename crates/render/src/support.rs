@@ -6,12 +6,10 @@
 //! proportion to the kernel, tell the share that is there (the boundary correction of kernel density estimates: Jones,
 //! "Simple boundary correction for kernel density estimation", Statistics and Computing 3, 1993).
 //!
-//! Looking costs rays, so the first pass looks at one pixel in four, and at its neighbours where a disc is cut; later passes look
-//! around pixels where the pass before saw a disc cut: radii do not grow. What the camera sees directly, it sees again in the
-//! next pass: points that were looked at then still count, less the more the radius has shrunk since, and few new ones go on
-//! with their sequence.
+//! Which pixels are looked at, and how often: [`CutPixels`].
 
 use crate::counters::Counters;
+use crate::cut_pixels::{COARSE, CutPixels, Seen};
 use crate::maps::Estimate;
 use crate::trace::Tracer;
 use crate::world::World;
@@ -20,8 +18,6 @@ use photinus_num::{Sampler, StreamKind, unit_f32};
 use photinus_photons::Kernel;
 use photinus_profile::queries::RayKind;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 /// Steps of points that fill the square evenly, as those of [`R2`](crate::eye_pass::R2), in units of 2^-32.
 const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
@@ -46,8 +42,6 @@ fn part(points: f32) -> f32 {
     1.0 / (points + 0.2 + 0.9 / points.max(1.0))
 }
 
-/// Edge of the squares of pixels of which the first pass looks at one first; a tile's edge is a multiple.
-const COARSE: u32 = 2;
 /// How far above the surface rays run along it, in radii: over what is too low to matter.
 const HEIGHT: f32 = 0.03;
 /// Least share: a corner of three walls leaves a quarter, and a few points may miss it.
@@ -64,126 +58,12 @@ const ROUNDING: f32 = 1e-3;
 /// Least cosine between normals of photons and query, as searches have it.
 const LEAST_COSINE: f32 = 0.5;
 
-/// How fast points count less as the radius shrinks: power of the ratio of radii.
-const FADING: i32 = 6;
-/// Points on the same surface of a pixel are no farther apart than this, in radii ...
-const SAME_SURFACE: f32 = 0.5;
-/// ... and no farther off its plane.
-const SAME_PLANE: f32 = 0.05;
-/// A disc that lost less is whole.
-const LEAST_LOSS: f32 = 0.01;
-
-/// What passes before saw of the disc around what the camera sees directly in a pixel.
-#[derive(Clone, Copy, Default)]
-struct Seen {
-    position: Vec3,
-    radius: f32,
-    /// Points looked at, as much as they count by now; 0 where none were.
-    points: f32,
-    /// What of them is lost.
-    lost: f32,
-    /// Points of the pixel's sequence that have been used.
-    used: u32,
-}
-
-impl Seen {
-    /// The same for an estimate over `radius`, if it lies on the same surface.
-    fn faded(self, e: &Estimate, radius: f32) -> Self {
-        let away = e.query.position - self.position;
-        let is_same = self.points > 0.0
-            && away.length() <= SAME_SURFACE * radius
-            && away.dot(e.query.normal).abs() <= SAME_PLANE * radius + e.offset;
-        let fade = if is_same { (radius / self.radius).min(1.0).powi(FADING) } else { 0.0 };
-        Self { position: e.query.position, radius, points: self.points * fade, lost: self.lost * fade, used: self.used }
-    }
-
-    fn is_cut(&self) -> bool {
-        self.lost > LEAST_LOSS * self.points
-    }
-}
-
-/// Pixels whose estimates are near something that cuts their discs.
-pub(crate) struct CutPixels {
-    width: usize,
-    /// Whether a pass has looked.
-    is_known: bool,
-    /// By the pass before, row by row.
-    before: Vec<bool>,
-    now: Vec<AtomicBool>,
-    seen: Vec<Seen>,
-    /// What this pass adds, by pixel; those of a pixel stand in its order.
-    new: Mutex<Vec<(u32, Seen)>>,
-}
-
-impl CutPixels {
-    /// Nothing is known of a window of this size.
-    pub fn new(width: u32, height: u32) -> Self {
-        let count = width as usize * height as usize;
-        let now = (0..count).map(|_| AtomicBool::new(false)).collect();
-        Self {
-            width: width as usize,
-            is_known: false,
-            before: vec![false; count],
-            now,
-            seen: vec![Seen::default(); count],
-            new: Mutex::default(),
-        }
-    }
-
-    /// Ends a pass: what it saw steers the next.
-    pub fn advance(&mut self) {
-        for (pixel, seen) in self.take_new() {
-            self.seen[pixel as usize] = seen;
-        }
-        for ((before, now), seen) in self.before.iter_mut().zip(&mut self.now).zip(&self.seen) {
-            *before = std::mem::take(now.get_mut()) || (*before && seen.is_cut());
-        }
-        self.is_known = true;
-    }
-
-    fn take_new(&mut self) -> Vec<(u32, Seen)> {
-        std::mem::take(self.new.get_mut().unwrap_or_else(PoisonError::into_inner))
-    }
-
-    /// Forgets what an unfinished pass saw: the next one begins as that did.
-    pub fn forget(&mut self) {
-        self.take_new();
-        self.now.iter_mut().for_each(|now| *now.get_mut() = false);
-    }
-
-    /// Whether the pass before saw a disc cut here or next to here, as samples of a pixel fall anywhere in it.
-    fn were_cut(&self, place: [u32; 2]) -> bool {
-        self.around(place).any(|i| self.before[i])
-    }
-
-    /// The same of this pass. Only what the caller's own tile has seen is sure to be there: a tile ends where a square of
-    /// [`COARSE`] pixels ends, and nothing is asked beyond it.
-    fn are_cut(&self, [x, y]: [u32; 2]) -> bool {
-        let seen = [x, y].map(|c| c - c % COARSE);
-        self.now[self.index(seen)].load(Ordering::Relaxed)
-    }
-
-    fn saw_cut(&self, place: [u32; 2]) {
-        self.now[self.index(place)].store(true, Ordering::Relaxed);
-    }
-
-    fn index(&self, [x, y]: [u32; 2]) -> usize {
-        y as usize * self.width + x as usize
-    }
-
-    /// A pixel and its neighbours.
-    fn around(&self, [x, y]: [u32; 2]) -> impl Iterator<Item = usize> {
-        let [x, y] = [x as usize, y as usize];
-        let (width, height) = (self.width, self.before.len() / self.width);
-        let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
-        (y.saturating_sub(1)..=(y + 1).min(height - 1)).flat_map(move |y| columns.clone().map(move |x| y * width + x))
-    }
-}
-
 /// How an estimate's disc is looked at.
 #[derive(Clone, Copy)]
 pub(crate) struct Look {
     pub radius: f32,
+    /// Photons per area.
+    pub density: f32,
     /// Points that are looked at.
     pub count: u32,
 }
@@ -264,9 +144,9 @@ impl Looker<'_> {
         let wanted: Vec<usize> = (0..estimates.len()).filter(|&i| is_wanted(pixel(estimates[i].path))).collect();
         let mut seen: Vec<Seen> = estimates.iter().zip(looks).map(|_| Seen::default()).collect();
         for &i in &wanted {
-            let (e, before) = (&estimates[i], self.pixels.index(pixel(estimates[i].path)));
-            let before = if e.is_first { self.pixels.seen[before] } else { Seen::default() };
-            seen[i] = before.faded(e, looks[i].radius);
+            let e = &estimates[i];
+            let before = if e.is_first { self.pixels.seen(pixel(e.path)) } else { Seen::default() };
+            seen[i] = before.turned_to(e, looks[i]);
         }
         // Where something is missing, more points tell how much.
         for stage in [1, MORE_POINTS] {
@@ -292,6 +172,7 @@ impl Looker<'_> {
             for (i, lost) in self.lost(estimates, points, tracer, counters) {
                 seen[i].lost += lost;
                 if lost == 1.0 {
+                    seen[i].is_cut = true;
                     self.pixels.saw_cut(pixel(estimates[i].path));
                 }
             }
@@ -301,7 +182,7 @@ impl Looker<'_> {
         }
         let first = wanted.into_iter().filter(|&i| estimates[i].is_first && seen[i].points > 0.0);
         let new = first.map(|i| (self.pixels.index(pixel(estimates[i].path)) as u32, seen[i]));
-        self.pixels.new.lock().unwrap_or_else(PoisonError::into_inner).extend(new);
+        self.pixels.add_new(new.collect());
     }
 
     fn add_points(

@@ -106,16 +106,7 @@ impl LightGuide {
             return Ok(None);
         }
         let scale = 0.5 * lights.region().radius;
-        let mut guide = Self {
-            nodes: Vec::new(),
-            extents: Vec::new(),
-            tables: Vec::new(),
-            scale,
-            items: lights.items(),
-            clear: Vec::new(),
-            tally: Tally::default(),
-            rays: 0,
-        };
+        let mut guide = Self::new(scale, lights.items());
         let mut groups: Vec<Vec<VisiblePoint>> = Vec::new();
         let budget = (RAYS_PER_PIXEL * pixels).clamp(BUDGET[0], BUDGET[1]);
         let most_groups = (budget / (lights.items() * RAYS as usize)).max(1);
@@ -132,6 +123,20 @@ impl LightGuide {
         guide.tally = Tally::new(looks.into_iter().flat_map(|look| look.counts).collect());
         guide.choose_anew();
         Ok(Some(guide))
+    }
+
+    /// Without groups yet.
+    fn new(scale: f32, items: usize) -> Self {
+        Self {
+            nodes: Vec::new(),
+            extents: Vec::new(),
+            tables: Vec::new(),
+            scale,
+            items,
+            clear: Vec::new(),
+            tally: Tally::default(),
+            rays: 0,
+        }
     }
 
     /// Cuts `points` in the middle of their widest axis until groups have at most `leaf`; returns the node.
@@ -341,13 +346,51 @@ mod tests {
                 VisiblePoint { position, normal, width: 0.01, lift: 1e-4 }
             })
             .collect();
-        let mut guide = LightGuide { nodes: Vec::new(), extents: Vec::new(), tables: Vec::new(), scale: 1.0 };
+        let mut guide = LightGuide::new(1.0, 3);
         let mut groups = Vec::new();
-        guide.split(points.clone(), LEAF, &mut groups);
-        let found = (0..groups.len()).map(|g| vec![g as f32, 1.0, 0.0]).collect();
-        let shares = guide.shares(found);
-        guide.tables = guide.tables(&shares);
+        guide.split(points.clone(), 16, &mut groups);
+        guide.clear = (0..groups.len()).flat_map(|g| [g as f32, 1.0, 0.0]).collect();
+        guide.tally = Tally::new(vec![Count { asked: 4, reached: 2 }; 3 * groups.len()]);
+        guide.choose_anew();
         (guide, points)
+    }
+
+    /// Rays that get through or not move the choice as the root of their share; those of a stopped pass do not.
+    #[test]
+    fn findings_steer_the_choice() {
+        let (mut guide, points) = guide();
+        let place = guide.place(points[300].position, points[300].normal);
+        let places = || points.iter().map(|p| guide.place(p.position, p.normal));
+        let others: Vec<Place> = places().filter(|other| *other != place && place_index(*other) > 0).collect();
+        let by_power = 0.2;
+        let share = |guide: &LightGuide, place| {
+            let [a, b] = [0, 1].map(|item| guide.tables[place_index(place)].probability(item));
+            f64::from(b / a)
+        };
+        let before = share(&guide, place);
+        let add = |guide: &LightGuide| {
+            for i in 0..20_000 {
+                guide.add(guide.slot(place, 0).unwrap(), i % 100 < 1);
+                guide.add(guide.slot(place, 1).unwrap(), i % 100 < 64);
+            }
+        };
+        add(&guide);
+        guide.forget();
+        guide.keep();
+        assert_eq!(share(&guide, place), before);
+        add(&guide);
+        guide.keep();
+        let after = share(&guide, place);
+        assert!((after / before - 8.0).abs() < 0.1, "{}", after / before);
+        // Groups around, with few rays of their own, follow.
+        let moved = others.iter().map(|other| share(&guide, *other) * place_index(*other) as f64);
+        assert!(moved.fold(0.0, f64::max) > 2.0);
+        assert!(guide.probability(by_power, place, 2) > 0.0);
+        assert_eq!(guide.slot(Place::ANY, 1), None);
+    }
+
+    fn place_index(place: Place) -> usize {
+        place.0 as usize
     }
 
     /// Many points share coordinates with others: none may be looked for on the wrong side of a cut.
