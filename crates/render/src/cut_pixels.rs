@@ -68,15 +68,19 @@ impl Seen {
     }
 }
 
-/// Photons that are enough for an estimate whose disc is cut, and the least part of the map's radius that it asks for.
-const ENOUGH: f32 = 10.0;
+/// Photons that are enough for an estimate whose disc is cut: this many over the root of the number of passes, at least so many.
+/// Noise falls as one over the passes and over the photons of each, what light from next door adds falls as the disc does: the
+/// sum of both is least so.
+const ENOUGH: f32 = 40.0;
+const LEAST_ENOUGH: f32 = 4.0;
+/// Least part of the map's radius that is asked for.
 const LEAST_SCALE: f32 = 0.25;
 
 /// Pixels whose estimates are near something that cuts their discs.
 pub(crate) struct CutPixels {
     width: usize,
-    /// Whether a pass has looked.
-    pub is_known: bool,
+    /// Passes that have looked.
+    passes: u32,
     /// By the passes before, row by row.
     before: Vec<bool>,
     now: Vec<AtomicBool>,
@@ -92,7 +96,7 @@ impl CutPixels {
         let now = (0..count).map(|_| AtomicBool::new(false)).collect();
         Self {
             width: width as usize,
-            is_known: false,
+            passes: 0,
             before: vec![false; count],
             now,
             seen: vec![Seen::default(); count],
@@ -113,7 +117,7 @@ impl CutPixels {
         for (before, now) in self.before.iter_mut().zip(&mut self.now) {
             *before |= std::mem::take(now.get_mut());
         }
-        self.is_known = true;
+        self.passes += 1;
     }
 
     /// Forgets what an unfinished pass saw: the next one begins as that did.
@@ -139,7 +143,13 @@ impl CutPixels {
             return 1.0;
         }
         let found = std::f32::consts::PI * radius * radius * seen.density;
-        (ENOUGH / found.max(ENOUGH)).sqrt().max(LEAST_SCALE)
+        let enough = (ENOUGH / (self.passes as f32 + 1.0).sqrt()).max(LEAST_ENOUGH);
+        (enough / found.max(enough)).sqrt().max(LEAST_SCALE)
+    }
+
+    /// Whether a pass has looked.
+    pub fn is_known(&self) -> bool {
+        self.passes > 0
     }
 
     /// Whether a pass before saw a disc cut here or next to here, as samples of a pixel fall anywhere in it.

@@ -118,7 +118,7 @@ impl Looker<'_> {
         counters: &mut Counters,
     ) -> Vec<f32> {
         let mut shares = vec![1.0; estimates.len()];
-        if self.pixels.is_known {
+        if self.pixels.is_known() {
             self.look(estimates, looks, &pixel, |place| self.pixels.were_cut(place), &mut shares, tracer, counters);
         } else {
             // One pixel of a square first, then the others of those squares where a disc is cut.
