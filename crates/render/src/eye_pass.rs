@@ -4,23 +4,21 @@
 use crate::SurfacePoint;
 use crate::bsdf::{Bsdf, BsdfSample, LobeSet, TransportMode};
 use crate::camera::CameraModel;
-use crate::companions::SHIFTS;
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::cut_pixels::CutPixels;
 use crate::film::{Aov, FilmLayout};
 use crate::film_filter::{FilterSampler, SharedFilter};
 use crate::light::{Lights, Place};
-use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps};
+use crate::maps::{Estimate, Estimates, Maps};
 use crate::recording::NOT_YET;
-use crate::support::{Look, Looker, points_for};
 use crate::tile::{Part, Tile, Tiles};
 use crate::trace::{Tracer, shadow_ray};
 use crate::twin::{Queries, Twin};
 use crate::world::World;
 use photinus_geometry::{Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
-use photinus_photons::{GatherQuery, Kernel};
+use photinus_photons::GatherQuery;
 use photinus_profile::queries::{BlockKey, RayKind, Stage};
 
 /// Edge of a tile in pixels.
@@ -543,61 +541,6 @@ impl EyePass<'_> {
                 }
             }
         }
-    }
-
-    /// How much of the discs of estimates is surface.
-    fn shares(
-        &self,
-        kernel: Kernel,
-        list: &[Estimate],
-        found: &[Estimated],
-        tile: &Tile,
-        tracer: &mut Tracer,
-        counters: &mut Counters,
-    ) -> Vec<f32> {
-        let Some(pixels) = self.cut_pixels else { return vec![1.0; list.len()] };
-        let sample = [tile.sample, self.pass * self.spp + tile.sample];
-        let origin = [self.crop[0], self.crop[1]];
-        let looker = Looker { world: self.world, kernel, pixels, seed: self.seed, origin, sample };
-        let [x0, y0, width, _] = tile.place;
-        let pixel = |path: u32| [x0 + path % width, y0 + path / width];
-        let look = |(e, found): (&Estimate, &Estimated)| {
-            let mine = found.radiance.element_sum();
-            let others = tile.light(e.path).element_sum();
-            Look { radius: found.radius, density: found.density, count: points_for(mine / (mine + others)) }
-        };
-        let looks: Vec<Look> = list.iter().zip(found).map(look).collect();
-        looker.shares(list, &looks, pixel, tracer, counters)
-    }
-
-    /// Answers the estimates of a batch from the maps.
-    fn gather(
-        &self,
-        estimates: &Estimates,
-        twin: &mut Twin,
-        tile: &mut Tile,
-        tracer: &mut Tracer,
-        counters: &mut Counters,
-    ) {
-        let Some(maps) = self.maps else { return };
-        let mut scratch = EstimateScratch::for_batch_of(tracer);
-        let mut out: Vec<Estimated> = Vec::new();
-        let (list, companions) = (&estimates.list, &estimates.companions);
-        maps.global.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-        let shares = self.shares(maps.global.kernel, list, &out, tile, tracer, counters);
-        for ((e, found), share) in list.iter().zip(&out).zip(shares) {
-            tile.add(e.path, Part::Indirect, found.radiance / share);
-            tile.add_scalar(e.path, Aov::PhotonDensity, found.density / share);
-        }
-        if let Some(caustic) = &maps.caustic {
-            for (list, shifts) in [(list, &[[0.0; 2]; 1][..]), (companions, &SHIFTS[..])] {
-                caustic.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-                for (i, (e, found)) in list.iter().zip(&out).enumerate() {
-                    tile.add_shifted(e.path, shifts[i % shifts.len()], Part::Caustic, found, 1.0 / e.places as f32);
-                }
-            }
-        }
-        scratch.hand_over(tracer);
     }
 }
 

@@ -4,6 +4,7 @@
 // Expected values may come from any mathematics library: they are compared within tolerances.
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
+mod answers;
 pub mod bsdf;
 mod camera;
 mod caustic_plan;
