@@ -39,17 +39,34 @@ impl Node {
     }
 }
 
+/// Lists that tiles hand on to one another.
+#[derive(Default)]
+struct Buffers {
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    /// Numbers of the rays that partly transparent surfaces asked for some.
+    draws: Vec<Option<Sampler>>,
+    nodes: Vec<Node>,
+    next: Vec<Node>,
+    bsdf: Bsdf,
+    estimates: Estimates,
+    scratch: EstimateScratch,
+    found: Vec<Estimated>,
+}
+
 impl EyePass<'_> {
     /// As [`EyePass::run`], by the thesis's recursion.
     pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.tiles(TILE)
-            .run(film, observer, |index, tile, counters| self.direct_tile(maps, index, tile, counters, observer))
+        self.tiles(TILE).run(film, observer, |buffers, index, tile, counters| {
+            self.direct_tile(maps, buffers, index, tile, counters, observer)
+        })
     }
 
     /// Returns how many samples it has made.
     fn direct_tile(
         &self,
         maps: &Maps,
+        Buffers { rays, hits, draws, nodes, next, bsdf, estimates, scratch, found }: &mut Buffers,
         index: u32,
         tile: &mut Tile,
         counters: &mut Counters,
@@ -57,33 +74,23 @@ impl EyePass<'_> {
     ) -> u32 {
         let mut tracer = self.tracer(index);
         let mut twin = self.twin(Queries::Estimates, index);
-        let (mut rays, mut hits) = (Vec::new(), Vec::new());
-        let mut scratch = EstimateScratch::for_batch_of(&tracer);
-        let mut found: Vec<Estimated> = Vec::new();
-        let mut estimates = Estimates::default();
-        let mut bsdf = Bsdf::nothing();
-        // Of the rays that partly transparent surfaces drew numbers for.
-        let mut draws: Vec<Option<Sampler>> = Vec::new();
-        let mut next = Vec::new();
+        scratch.begin_batch_of(&tracer);
         let place = tile.place;
         for sample in 0..self.spp {
             if observer.cancelled() {
                 return sample;
             }
-            let mut nodes: Vec<Node> = self
-                .camera_paths(sample, tile)
-                .into_iter()
-                .map(|p| Node {
-                    ray: p.ray,
-                    throughput: p.throughput,
-                    pixel: p.pixel,
-                    level: 0,
-                    number: 1,
-                    width: p.width,
-                    spread: p.spread,
-                    record: NOT_YET,
-                })
-                .collect();
+            nodes.clear();
+            nodes.extend(self.camera_paths(sample, tile).map(|p| Node {
+                ray: p.ray,
+                throughput: p.throughput,
+                pixel: p.pixel,
+                level: 0,
+                number: 1,
+                width: p.width,
+                spread: p.spread,
+                record: NOT_YET,
+            }));
             counters.rays.camera += nodes.len() as u64;
             estimates.clear();
             while !nodes.is_empty() {
@@ -92,24 +99,24 @@ impl EyePass<'_> {
                 draws.clear();
                 draws.resize(if self.world.passes_light { nodes.len() } else { 0 }, None);
                 tracer.ask(nodes.iter().map(|n| (n.kind(), n.record)));
-                tracer.closest(&rays, &mut hits, counters, |i| {
+                tracer.closest(rays, hits, counters, |i| {
                     draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], place, sample)).next_1d()
                 });
                 nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
                 next.clear();
                 timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
-                    for (i, (node, hit)) in nodes.iter().zip(&hits).enumerate() {
+                    for (i, (node, hit)) in nodes.iter().zip(&*hits).enumerate() {
                         let mut drawn = draws.get_mut(i).and_then(Option::take);
                         let sampler = || drawn.take().unwrap_or_else(|| self.node_sampler(node, place, sample));
-                        self.branch(node, hit, sampler, &mut bsdf, tile, &mut next, &mut estimates);
+                        self.branch(node, hit, sampler, bsdf, tile, next, estimates);
                     }
                 });
                 counters.rays.specular += next.len() as u64;
-                std::mem::swap(&mut nodes, &mut next);
+                std::mem::swap(nodes, next);
             }
             maps.global.sort(&mut estimates.list, maps.knn);
-            maps.global.estimate(&estimates.list, &estimates, maps.knn, &mut twin, &mut scratch, &mut found, counters);
-            for (e, found) in estimates.list.iter().zip(&found) {
+            maps.global.estimate(&estimates.list, estimates, maps.knn, &mut twin, scratch, found, counters);
+            for (e, found) in estimates.list.iter().zip(&*found) {
                 tile.estimated(e.path, found);
             }
             scratch.hand_over(&mut tracer);

@@ -12,11 +12,12 @@ use crate::film_filter::{FilterSampler, SharedFilter};
 use crate::light::{Lights, Place};
 use crate::maps::{Estimate, Estimates, Maps};
 use crate::recording::NOT_YET;
+use crate::shadow::{Shadow, power_heuristic};
 use crate::tile::{Part, Tile, Tiles};
-use crate::trace::{Tracer, shadow_ray};
+use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
 use crate::world::World;
-use photinus_geometry::{Ray, Vec3};
+use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
 use photinus_profile::queries::{BlockKey, RayKind, Stage};
@@ -61,11 +62,11 @@ pub(crate) struct EyePass<'a> {
 pub(crate) struct Path {
     pub ray: Ray,
     pub throughput: Vec3,
-    sampler: Sampler,
+    pub sampler: Sampler,
     /// Pixel within the tile.
     pub pixel: u32,
     /// Edges so far.
-    depth: u32,
+    pub depth: u32,
     /// Pixel's cone: width at the ray's origin and growth.
     pub width: f32,
     pub spread: f32,
@@ -73,20 +74,20 @@ pub(crate) struct Path {
     last_pdf: f32,
     last_position: Vec3,
     /// Choice of lights that held there.
-    last_place: Place,
+    pub last_place: Place,
     /// Shadow rays that were sent there.
-    last_shadows: f32,
+    pub last_shadows: f32,
     /// Rays that were sent along lobes like the last direction's, this one among them.
     last_looks: f32,
     /// Diffuse bounces, and mirror-like ones after the last of them.
-    diffuse: u32,
+    pub diffuse: u32,
     mirrors: u32,
     /// Undoes the scaling of radiance at refraction, for roulette.
     eta_sq: f32,
     /// Sees lights only, then ends.
     probe: bool,
     /// Record of the latest ray.
-    record: u32,
+    pub record: u32,
 }
 
 impl Path {
@@ -122,15 +123,16 @@ impl Path {
     }
 }
 
-struct Shadow {
-    ray: Ray,
-    /// Record of the ray that led here.
-    record: u32,
-    pixel: u32,
-    /// Where it counts for the choice of lights.
-    slot: Option<u32>,
-    diffuse: (Vec3, Part),
-    glossy: (Vec3, Part),
+/// Lists that tiles hand on to one another.
+#[derive(Default)]
+struct Buffers {
+    paths: Vec<Path>,
+    rays: Vec<Ray>,
+    hits: Vec<Hit>,
+    bsdf: Bsdf,
+    asked: Asked,
+    shadow_rays: Vec<Ray>,
+    visible: Vec<f32>,
 }
 
 /// What paths ask for where they land.
@@ -145,17 +147,18 @@ impl EyePass<'_> {
     /// Renders one pass into `film` (channels of each pixel of the window, row by row), means over the samples of
     /// the pass. Where it is stopped, tiles that have any sample are there, as means over those.
     pub fn run(&self, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.tiles(TILE).run(film, observer, |index, tile, counters| {
+        self.tiles(TILE).run(film, observer, |buffers: &mut Buffers, index, tile, counters| {
             let mut tracer = self.tracer(index);
             let mut twin = self.twin(Queries::Estimates, index);
             for sample in 0..self.spp {
                 if observer.cancelled() {
                     return sample;
                 }
-                let paths = self.camera_paths(sample, tile);
-                counters.rays.camera += paths.len() as u64;
-                let estimates = self.follow(paths, tile, &mut tracer, counters);
-                self.gather(&estimates, &mut twin, tile, &mut tracer, counters);
+                buffers.paths.clear();
+                buffers.paths.extend(self.camera_paths(sample, tile));
+                counters.rays.camera += buffers.paths.len() as u64;
+                self.follow(buffers, tile, &mut tracer, counters);
+                self.gather(&buffers.asked.estimates, &mut twin, tile, &mut tracer, counters);
                 tile.end_sample();
             }
             tracer.finish();
@@ -195,18 +198,17 @@ impl EyePass<'_> {
     }
 
     /// The paths of a sample of a tile.
-    pub(crate) fn camera_paths(&self, sample: u32, tile: &mut Tile) -> Vec<Path> {
+    pub(crate) fn camera_paths<'t>(&'t self, sample: u32, tile: &'t mut Tile) -> impl Iterator<Item = Path> + 't {
         tile.sample = sample;
         let count = tile.place[2] * tile.place[3];
-        let mut paths = Vec::with_capacity(count as usize);
-        for pixel in 0..count {
+        (0..count).map(move |pixel| {
             let [x, y] = self.film_pixel(tile.place, pixel);
             let mut sampler = self.camera_sampler([x, y], sample);
             let ([dx, dy], weight) = self.film_offset(sampler.next_2d());
             tile.place_sample(pixel, [dx, dy], weight);
             let film = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
             let start = self.camera.ray(film, &mut sampler);
-            paths.push(Path {
+            Path {
                 ray: start.ray,
                 throughput: Vec3::ONE,
                 sampler,
@@ -224,31 +226,28 @@ impl EyePass<'_> {
                 eta_sq: 1.0,
                 probe: false,
                 record: NOT_YET,
-            });
-        }
-        paths
+            }
+        })
     }
 
-    /// Follows all paths of a batch to their ends; returns the estimates that they ask for.
-    fn follow(&self, mut paths: Vec<Path>, tile: &mut Tile, tracer: &mut Tracer, counters: &mut Counters) -> Estimates {
-        let mut asked = Asked::default();
-        let mut bsdf = Bsdf::nothing();
-        let (mut rays, mut hits) = (Vec::new(), Vec::new());
-        let (mut shadow_rays, mut visible) = (Vec::new(), Vec::new());
+    /// Follows all paths of a batch to their ends, and collects the estimates that they ask for.
+    fn follow(&self, buffers: &mut Buffers, tile: &mut Tile, tracer: &mut Tracer, counters: &mut Counters) {
+        let Buffers { paths, rays, hits, bsdf, asked, shadow_rays, visible, .. } = buffers;
+        asked.estimates.clear();
         while !paths.is_empty() {
             rays.clear();
             rays.extend(paths.iter().map(|p| p.ray));
             tracer.ask(paths.iter().map(|p| (p.kind(), p.record)));
-            tracer.closest(&rays, &mut hits, counters, |i| paths[i].sampler.next_1d());
+            tracer.closest(rays, hits, counters, |i| paths[i].sampler.next_1d());
             paths.iter_mut().enumerate().for_each(|(i, path)| path.record = tracer.record_of(i));
             asked.next.clear();
             asked.shadows.clear();
             timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
-                for (path, hit) in paths.drain(..).zip(&hits) {
+                for (path, hit) in paths.drain(..).zip(&*hits) {
                     if hit.is_hit() {
                         let width = path.width + path.spread * hit.t;
                         let point = self.world.surface(&path.ray, hit, width);
-                        self.shade(path, hit.t, &point, &mut bsdf, tile, &mut asked);
+                        self.shade(path, hit.t, &point, bsdf, tile, asked);
                     } else {
                         self.escape(&path, tile);
                     }
@@ -258,8 +257,8 @@ impl EyePass<'_> {
             shadow_rays.extend(asked.shadows.iter().map(|s| s.ray));
             counters.rays.shadow += shadow_rays.len() as u64;
             tracer.ask(asked.shadows.iter().map(|s| (RayKind::Shadow, s.record)));
-            tracer.visibility(&shadow_rays, &mut visible, counters);
-            for (shadow, &share) in asked.shadows.iter().zip(&visible) {
+            tracer.visibility(shadow_rays, visible, counters);
+            for (shadow, &share) in asked.shadows.iter().zip(&*visible) {
                 if let Some(slot) = shadow.slot {
                     self.lights.saw(slot, share > 0.0);
                 }
@@ -271,9 +270,8 @@ impl EyePass<'_> {
             let probes = asked.next.iter().filter(|p| p.probe).count() as u64;
             counters.rays.gather += probes;
             counters.rays.specular += asked.next.len() as u64 - probes;
-            std::mem::swap(&mut paths, &mut asked.next);
+            std::mem::swap(paths, &mut asked.next);
         }
-        asked.estimates
     }
 
     /// A path leaves the scene.
@@ -338,74 +336,6 @@ impl EyePass<'_> {
             self.ask(&mut path, point, bsdf, wo, tile, asked);
         }
         self.bounce(path, point, bsdf, &mut asked.next);
-    }
-
-    /// Direct light by shadow rays, the choice of lights stratified over them.
-    fn light(&self, path: &mut Path, point: &SurfacePoint, bsdf: &Bsdf, shadows: &mut Vec<Shadow>) {
-        let (u, choice) = (path.sampler.next_2d(), path.sampler.next_1d());
-        // What is seen weakly, as in a coat, is worth fewer.
-        let worth = self.shadow_rays as f32 * path.throughput.max_element().min(1.0);
-        let count = if path.diffuse == 0 { (worth.ceil() as u32).max(1) } else { 1 };
-        path.last_shadows = count as f32;
-        for i in 0..count {
-            let step = |u: f32, by: f32| (u + i as f32 * by).fract();
-            let u = [step(u[0], R2[0]), step(u[1], R2[1])];
-            let choice = ((i as f32 + choice) / count as f32).min(0.999_999_94);
-            self.light_once(path, point, bsdf, choice, u, shadows);
-        }
-    }
-
-    fn light_once(
-        &self,
-        path: &Path,
-        point: &SurfacePoint,
-        bsdf: &Bsdf,
-        choice: f32,
-        u: [f32; 2],
-        shadows: &mut Vec<Shadow>,
-    ) {
-        let Some(light) = self.lights.sample(self.world, point.position, path.last_place, choice, u) else { return };
-        let density = light.pdf * path.last_shadows;
-        let traced = self.maps.is_none();
-        let part = |set: LobeSet, diffuse: bool| {
-            if !bsdf.has(set & LobeSet::NON_DELTA) {
-                return (Vec3::ZERO, Part::Direct);
-            }
-            let value = bsdf.eval(set, light.dir, TransportMode::Radiance);
-            let rival = if light.delta || (diffuse && !traced && !self.probe) {
-                0.0
-            } else if diffuse && !traced {
-                bsdf.pdf(set, light.dir)
-            } else {
-                // What a bounce finds also has to survive.
-                let (set, value) = if traced {
-                    (LobeSet::ALL, bsdf.eval(LobeSet::ALL, light.dir, TransportMode::Radiance))
-                } else {
-                    (set, value)
-                };
-                let pdf = bsdf.pdf(set, light.dir);
-                let looks = self.looks(path, bsdf) as f32;
-                pdf * looks * survival(path.depth, path.throughput * value / pdf.max(1e-20))
-            };
-            let weight = power_heuristic(density, rival);
-            let part = match (path.diffuse, diffuse) {
-                (0, _) => Part::Direct,
-                (1, false) => Part::Caustic,
-                _ => Part::Indirect,
-            };
-            (path.throughput * value * light.radiance * (weight / density), part)
-        };
-        let (diffuse, glossy) = (part(LobeSet::GATHER, true), part(LobeSet::CONTINUE, false));
-        if diffuse.0.max_element() > 0.0 || glossy.0.max_element() > 0.0 {
-            shadows.push(Shadow {
-                ray: shadow_ray(point, light.dir, light.target),
-                record: path.record,
-                pixel: path.pixel,
-                slot: self.lights.slot(path.last_place, light.item),
-                diffuse,
-                glossy,
-            });
-        }
     }
 
     /// Asks for a photon estimate, and sends a probe for direct light where those are on.
@@ -509,7 +439,7 @@ impl EyePass<'_> {
     }
 
     /// Rays that look along the mirror-like lobes of a surface for lights; all but one of them end there.
-    fn looks(&self, path: &Path, bsdf: &Bsdf) -> u32 {
+    pub(crate) fn looks(&self, path: &Path, bsdf: &Bsdf) -> u32 {
         let rough = bsdf.has(LobeSet::CONTINUE & LobeSet::NON_DELTA) && !bsdf.has(LobeSet::DELTA);
         if self.maps.is_some() && self.probe && path.depth == 1 && rough { LOOKS } else { 1 }
     }
@@ -544,18 +474,9 @@ impl EyePass<'_> {
     }
 }
 
-/// Veach's power heuristic with exponent 2 for one sample of each of two strategies.
-fn power_heuristic(mine: f32, other: f32) -> f32 {
-    if other == 0.0 {
-        return 1.0;
-    }
-    let ratio = other / mine;
-    1.0 / (1.0 + ratio * ratio)
-}
-
 /// Probability that a bounce of this throughput is followed: always from what the camera sees, as lamps shine in weak
 /// coats too; further on weak reflections are followed in proportion.
-fn survival(depth: u32, throughput: Vec3) -> f32 {
+pub(crate) fn survival(depth: u32, throughput: Vec3) -> f32 {
     match depth {
         0..=1 if throughput.max_element() > 0.0 => 1.0,
         0..=3 => (5.0 * throughput.max_element()).min(1.0),

@@ -26,6 +26,7 @@ mod recording;
 mod renderer;
 mod runs;
 mod settings;
+mod shadow;
 mod sort;
 mod support;
 mod surface;

@@ -113,7 +113,14 @@ pub(crate) struct EstimateScratch {
 impl EstimateScratch {
     /// Buffers that keep the searches where those of `tracer`'s batch are recorded.
     pub fn for_batch_of(tracer: &Tracer) -> Self {
-        Self { records: tracer.records().then(Vec::new), ..Self::default() }
+        let mut scratch = Self::default();
+        scratch.begin_batch_of(tracer);
+        scratch
+    }
+
+    /// Keeps the searches from now on where those of `tracer`'s batch are recorded.
+    pub fn begin_batch_of(&mut self, tracer: &Tracer) {
+        self.records = tracer.records().then(Vec::new);
     }
 
     /// Hands the searches over to the record of the batch.

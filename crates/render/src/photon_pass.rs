@@ -184,7 +184,7 @@ impl PhotonPass<'_> {
         }
         counters.rays.emitted += walks.len() as u64;
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
-        let mut bsdf = Bsdf::nothing();
+        let mut bsdf = Bsdf::default();
         while !walks.is_empty() {
             rays.clear();
             rays.extend(walks.iter().map(|w| w.ray));
@@ -301,8 +301,9 @@ impl PhotonPass<'_> {
         // A density counts flux over the face; scattering is defined over the shading normal. Their ratio here lets
         // the estimate agree with a path tracer on smooth meshes (Veach 1997, section 5.3); its limit bounds noise.
         let facing = point.geometric_normal.dot(wo);
-        let ratio = (bsdf.shading_normal().dot(wo) / facing).abs().min(8.0);
         let normal = if facing >= 0.0 { point.geometric_normal } else { -point.geometric_normal };
+        let shading = bsdf.shading_normal();
+        let ratio = if shading == normal { 1.0 } else { (shading.dot(wo) / facing).abs().min(8.0) };
         let weight = match self.together {
             Some(both) if caustic => {
                 let aimed = match self.guide {

@@ -8,6 +8,7 @@ use crate::maps::Estimated;
 use photinus_geometry::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Which picture a contribution belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,12 +219,14 @@ struct Made {
 }
 
 impl Tiles<'_> {
-    /// Renders all tiles by `render(index, tile, counters)`, which returns how many samples it has made, fewer than asked for only where it is stopped; puts them into `film`.
-    pub fn run(
+    /// Renders all tiles by `render(buffers, index, tile, counters)`, which returns how many samples it has made, fewer than
+    /// asked for only where it is stopped; puts them into `film`. What is in the buffers, which tiles hand on to one another,
+    /// must not matter.
+    pub fn run<B: Default + Send>(
         &self,
         film: &mut [f32],
         observer: &dyn Observer,
-        render: impl Fn(u32, &mut Tile, &mut Counters) -> u32 + Sync,
+        render: impl Fn(&mut B, u32, &mut Tile, &mut Counters) -> u32 + Sync,
     ) -> Result<Counters, Cancelled> {
         let [_, _, width, height] = self.window;
         let (across, down) = (width.div_ceil(self.edge), height.div_ceil(self.edge));
@@ -234,6 +237,7 @@ impl Tiles<'_> {
             (x0, y0, self.edge.min(width - x0), self.edge.min(height - y0))
         };
         let reach = self.shared.map_or(0, |filter| filter.reach);
+        let spare: Mutex<Vec<B>> = Mutex::new(Vec::new());
         // One by one: of a run of tiles that a thread has begun no other can take any when it has none left.
         let results: Vec<Option<Made>> = (0..tiles)
             .into_par_iter()
@@ -257,7 +261,9 @@ impl Tiles<'_> {
                     }),
                 };
                 let mut counters = Counters::default();
-                let samples = render(index, &mut tile, &mut counters);
+                let mut buffers = spare.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+                let samples = render(&mut buffers, index, &mut tile, &mut counters);
+                spare.lock().unwrap_or_else(PoisonError::into_inner).push(buffers);
                 if samples == 0 {
                     return None;
                 }

@@ -301,16 +301,11 @@ impl World {
         let shape = self.shape_of(hit.prim);
         let record = &self.shapes[shape];
         let triangles = self.primitives.triangle_count() as u32;
-        let reads = Reads { tangents: record.reads.tangents || (record.reads.textures && width > 0.0), ..record.reads };
         let mut point = if hit.prim < triangles {
-            self.triangle_surface(record, reads, hit.prim as usize, hit.alpha, hit.beta)
+            self.triangle_surface(record, hit.prim as usize, [hit.alpha, hit.beta], width)
         } else {
-            self.sphere_surface(record, reads, (hit.prim - triangles) as usize, ray.at(hit.t))
+            self.sphere_surface(record, (hit.prim - triangles) as usize, ray.at(hit.t), width)
         };
-        if record.reads.textures && width > 0.0 {
-            let scale = uv_scale(point.dp_du, point.dp_dv);
-            point.uv_footprint = if scale > 0.0 { width / scale } else { 0.0 };
-        }
         point.shape = shape as u32;
         point.prim = hit.prim;
         point
@@ -320,17 +315,18 @@ impl World {
     pub(crate) fn triangle_point(&self, prim: u32, alpha: f32, beta: f32) -> SurfacePoint {
         let shape = self.shape_of(prim);
         let record = &self.shapes[shape];
-        let mut point = self.triangle_surface(record, record.reads, prim as usize, alpha, beta);
+        let mut point = self.triangle_surface(record, prim as usize, [alpha, beta], 0.0);
         (point.shape, point.prim) = (shape as u32, prim);
         point
     }
 
     #[inline]
-    fn triangle_surface(&self, record: &ShapeRecord, reads: Reads, prim: usize, alpha: f32, beta: f32) -> SurfacePoint {
+    fn triangle_surface(&self, record: &ShapeRecord, prim: usize, [alpha, beta]: [f32; 2], width: f32) -> SurfacePoint {
         let [a, b, c] = self.primitives.triangle(prim);
         let weights = [1.0 - alpha - beta, alpha, beta];
         let (e1, e2) = (b - a, c - a);
-        let face = e1.cross(e2).try_normalize().unwrap_or(Vec3::Z);
+        let cross = e1.cross(e2);
+        let face = cross.try_normalize().unwrap_or(Vec3::Z);
         let normal = if record.normals == NONE {
             face
         } else {
@@ -351,8 +347,11 @@ impl World {
             shape: 0,
             prim: 0,
         };
-        if reads != Reads::NONE {
-            self.add_coordinates(record, reads, prim, [alpha, beta], &mut point);
+        if record.reads != Reads::NONE {
+            self.add_coordinates(record, prim, [alpha, beta], &mut point);
+            if width > 0.0 {
+                point.uv_footprint = width * self.uv_per_length(record, prim, cross.length());
+            }
         }
         point
     }
@@ -364,14 +363,7 @@ impl World {
     }
 
     /// Texture coordinates of a point of a triangle, their directions, and its vertex colour.
-    fn add_coordinates(
-        &self,
-        record: &ShapeRecord,
-        reads: Reads,
-        prim: usize,
-        [alpha, beta]: [f32; 2],
-        point: &mut SurfacePoint,
-    ) {
+    fn add_coordinates(&self, record: &ShapeRecord, prim: usize, [alpha, beta]: [f32; 2], point: &mut SurfacePoint) {
         let weights = [1.0 - alpha - beta, alpha, beta];
         let local = self.vertices(record, prim);
         let edges = || {
@@ -384,7 +376,7 @@ impl World {
         } else {
             let t = local.map(|v| self.uvs[(record.uvs + v) as usize]);
             point.uv = t[0] * weights[0] + t[1] * weights[1] + t[2] * weights[2];
-            if reads.tangents {
+            if record.reads.tangents {
                 let (e1, e2) = edges();
                 let (d1, d2) = (t[1] - t[0], t[2] - t[0]);
                 let determinant = d1.x * d2.y - d1.y * d2.x;
@@ -403,8 +395,24 @@ impl World {
         }
     }
 
+    /// Side of the square in texture coordinates that a unit square of a triangle is there, the inverse of
+    /// [`uv_scale`]; `area` is the triangle's, twice.
+    fn uv_per_length(&self, record: &ShapeRecord, prim: usize, area: f32) -> f32 {
+        let uv_area = if record.uvs == NONE {
+            1.0
+        } else {
+            let t = self.vertices(record, prim).map(|v| self.uvs[(record.uvs + v) as usize]);
+            (t[1] - t[0]).perp_dot(t[2] - t[0]).abs()
+        };
+        if uv_area == 0.0 || !uv_area.is_finite() {
+            return 1.0;
+        }
+        let ratio = (uv_area / area).sqrt();
+        if ratio.is_finite() { ratio } else { 0.0 }
+    }
+
     /// The surface of sphere `index` (counted among spheres) nearest to `near`.
-    fn sphere_surface(&self, record: &ShapeRecord, reads: Reads, index: usize, near: Vec3) -> SurfacePoint {
+    fn sphere_surface(&self, record: &ShapeRecord, index: usize, near: Vec3, width: f32) -> SurfacePoint {
         let sphere = self.primitives.spheres[index];
         let outward = (near - sphere.center).try_normalize().unwrap_or(Vec3::Z);
         let normal = if record.flip_normals { -outward } else { outward };
@@ -424,17 +432,20 @@ impl World {
         let [x, y, z] = record.axes;
         let local = Vec3::new(x.dot(outward), y.dot(outward), z.dot(outward));
         use std::f32::consts::{PI, TAU};
-        if reads.textures {
+        let Reads { textures, tangents } = record.reads;
+        if textures {
             let phi = libm::atan2f(local.y, local.x);
             let phi = if phi < 0.0 { phi + TAU } else { phi };
             let theta = libm::acosf(local.z.clamp(-1.0, 1.0));
             point.uv = Vec2::new(phi / TAU, 1.0 - theta / PI);
         }
-        if reads.tangents {
+        if tangents || (textures && width > 0.0) {
             let dp_du = (y * local.x - x * local.y) * (TAU * sphere.radius);
             let at_pole = !(dp_du.length_squared() > 1e-12 * sphere.radius * sphere.radius);
             point.dp_du = if at_pole { Frame::from_normal(normal).s * sphere.radius } else { dp_du };
             point.dp_dv = outward.cross(point.dp_du.normalize()) * (PI * sphere.radius);
+            let scale = uv_scale(point.dp_du, point.dp_dv);
+            point.uv_footprint = if scale > 0.0 { width / scale } else { 0.0 };
         }
         point
     }
@@ -444,7 +455,7 @@ impl World {
         let shape = self.shape_of(prim);
         let index = prim as usize - self.primitives.triangle_count();
         let record = &self.shapes[shape];
-        let mut point = self.sphere_surface(record, record.reads, index, near);
+        let mut point = self.sphere_surface(record, index, near, 0.0);
         (point.shape, point.prim) = (shape as u32, prim);
         point
     }

@@ -3,6 +3,7 @@
 use super::lobe::{Lobe, LobeKind};
 use super::materials::Materials;
 use super::microfacet::reflect;
+use super::recipe::Recipe;
 use super::scattering::{Bsdf, MAX_FRAMES, MAX_LOBES, ShadingFrame};
 use super::{GATHER_ALPHA, LobeSet, SurfaceModel};
 use crate::SurfacePoint;
@@ -54,15 +55,31 @@ impl<'a> Builder<'a> {
         let ng = point.geometric_normal * side;
         let ns = usable_normal(point.normal * side, ng, wo);
         let axes = sided_frame(ns, point.dp_du, side);
-        let frame = ShadingFrame { axes, wo: local_wo(&axes, wo), bump_alpha_sq: 0.0 };
+        let frame = ShadingFrame { axes, wo: local_wo(&axes, wo), bump_alpha_sq: 0.0, is_flat: ns == ng };
         (bsdf.wo, bsdf.ng, bsdf.ns, bsdf.shading_normal) = (wo, ng, ns, ns);
         bsdf.frames.clear();
         bsdf.frames.push(frame);
         bsdf.lobes.clear();
         bsdf.kinds = LobeSet::NONE;
         let mut builder = Builder { materials, point, lookup: point.lookup(), side, bsdf, solid: 0.0 };
-        builder.add(material, Place { share: 1.0, front: side > 0.0, frame: 0, depth: 0 });
-        builder.finish();
+        let place = Place { share: 1.0, front: side > 0.0, frame: 0, depth: 0 };
+        match materials.recipe(material, place.front) {
+            Some(recipe) => builder.follow(recipe, place),
+            None => {
+                builder.add(material, place);
+                builder.finish();
+            }
+        }
+    }
+
+    /// Copies the lobes of a recipe.
+    fn follow(&mut self, recipe: &Recipe, place: Place) {
+        for lobe in &recipe.lobes {
+            let single = LobeSet::DELTA.contains(lobe.set);
+            let frame = if single { self.specular(place).frame } else { place.frame };
+            self.bsdf.lobes.push(Lobe { frame, ..*lobe });
+        }
+        self.bsdf.kinds = recipe.kinds;
     }
 
     /// Adds the lobes of a nested material.
@@ -155,7 +172,7 @@ impl<'a> Builder<'a> {
         let tan_sq = (1.0 - cos * cos) / (cos * cos);
         // Estevez et al. 2019: an eighth of the squared slope is the roughness of the bumps, at most 1.
         let bump_alpha_sq = (0.125 * tan_sq).min(1.0);
-        let frame = ShadingFrame { axes, wo: local_wo(&axes, self.bsdf.wo), bump_alpha_sq };
+        let frame = ShadingFrame { axes, wo: local_wo(&axes, self.bsdf.wo), bump_alpha_sq, is_flat: false };
         self.bsdf.shading_normal = axes.n;
         self.add_frame(place, frame)
     }
@@ -174,7 +191,7 @@ impl<'a> Builder<'a> {
         let lifted = mirrored + ng * (least - cos);
         let n = (wo + lifted.normalize_or(ng)).normalize_or(ng);
         let axes = sided_frame(n, frame.axes.s, self.side);
-        self.add_frame(place, ShadingFrame { axes, wo: local_wo(&axes, wo), ..frame })
+        self.add_frame(place, ShadingFrame { axes, wo: local_wo(&axes, wo), is_flat: false, ..frame })
     }
 
     /// The place with a frame of its own, or with an equal one that is there; the last one takes all where they run out.
@@ -211,20 +228,27 @@ impl<'a> Builder<'a> {
     }
 
     /// Any lobe; `weight` and `albedo` are still to be scaled by the place's share.
+    #[inline]
     pub fn push(&mut self, place: Place, kind: LobeKind, set: LobeSet, weight: Vec3, albedo: [Vec3; 2], eta: f32) {
         if weight.max_element() <= 0.0 || !weight.is_finite() {
             return;
         }
         let albedo = albedo.map(|a| (a * place.share).clamp(Vec3::ZERO, Vec3::ONE));
         let lobe = Lobe { kind, set, weight: weight * place.share, albedo, eta, frame: place.frame };
-        if self.merge(&lobe) {
+        if !self.bsdf.lobes.is_empty() && self.merge(&lobe) {
             return;
         }
-        if self.bsdf.lobes.try_push(lobe).is_ok() {
-            self.bsdf.kinds |= set;
-            return;
+        if self.bsdf.lobes.is_full() {
+            return self.fold(albedo);
         }
-        // Full: keep the energy, give up the shape. The last lobe becomes the diffuse one.
+        self.bsdf.lobes.push(lobe);
+        self.bsdf.kinds |= set;
+    }
+
+    /// Makes room where there is none: keeps the energy of one more lobe, gives up the shape. The last lobe becomes the
+    /// diffuse one.
+    #[cold]
+    fn fold(&mut self, albedo: [Vec3; 2]) {
         let last = &mut self.bsdf.lobes[MAX_LOBES - 1];
         let sum = last.albedo[0] + last.albedo[1] + albedo[0] + albedo[1];
         last.kind = LobeKind::Lambert;
@@ -291,9 +315,10 @@ fn sided_frame(n: Vec3, tangent: Vec3, side: f32) -> Frame {
 /// are on the side of `wo`.
 #[inline]
 fn usable_normal(n: Vec3, ng: Vec3, wo: Vec3) -> Vec3 {
-    let mut n = if n.is_finite() { n } else { ng };
+    let mut n = n;
     let geometric = n.dot(ng);
-    if geometric < LEAST_COSINE {
+    // What is not finite is outside too, and becomes the geometric normal.
+    if !(LEAST_COSINE..2.0).contains(&geometric) {
         n = (n + ng * (LEAST_COSINE - geometric)).normalize_or(ng);
     }
     let cos = n.dot(wo);

@@ -2,6 +2,7 @@
 
 use super::builder::Builder;
 use super::microfacet::{InterfaceTable, SplitSumTable};
+use super::recipe::{Recipe, recipes};
 use super::{Bsdf, Reads, SurfaceModel, fresnel_diffuse_reflectance};
 use crate::SurfacePoint;
 use crate::texture::{TextureLookup, Textures};
@@ -26,6 +27,8 @@ struct Prepared {
     has_opacity: bool,
     is_diffuse: bool,
     reads: Reads,
+    /// Outside and inside.
+    recipes: Option<[Recipe; 2]>,
 }
 
 /// A table that the lobes of a material look up; indices are inside over outside.
@@ -86,7 +89,8 @@ impl Materials {
                 .nested()
                 .map(|id| result.materials[id.0 as usize].reads)
                 .fold(super::members::reads(&material), |all, nested| all | nested);
-            result.materials.push(Prepared { material, has_opacity, is_diffuse, reads });
+            result.materials.push(Prepared { material, has_opacity, is_diffuse, reads, recipes: None });
+            result.materials[i].recipes = recipes(&result, MaterialId(i as u32), model);
         }
         result
     }
@@ -127,6 +131,19 @@ impl Materials {
         self.materials.get(id.0 as usize).map_or(&MISSING, |prepared| &prepared.material)
     }
 
+    /// The lobes of one side of a material where they are always the same.
+    #[inline]
+    pub(super) fn recipe(&self, id: MaterialId, front: bool) -> Option<&Recipe> {
+        let prepared = self.materials.get(id.0 as usize)?;
+        prepared.recipes.as_ref().map(|[outside, inside]| if front { outside } else { inside })
+    }
+
+    #[cfg(test)]
+    pub(super) fn without_recipes(mut self) -> Self {
+        self.materials.iter_mut().for_each(|prepared| prepared.recipes = None);
+        self
+    }
+
     /// The table whose index, inside over outside, is nearest to `eta`.
     pub(super) fn interface_table(&self, model: MicrofacetModel, eta: f32) -> Option<&InterfaceTable> {
         let of_model = self.interfaces.iter().filter(|table| table.model == model);
@@ -149,7 +166,7 @@ impl Materials {
     /// Holes are not part of it: it describes the surface that is met with probability
     /// [`opacity`](Self::opacity). Where nothing is there at all, light passes straight through.
     pub fn resolve(&self, material: MaterialId, point: &SurfacePoint, wo: Vec3) -> Bsdf {
-        let mut bsdf = Bsdf::nothing();
+        let mut bsdf = Bsdf::default();
         self.resolve_into(material, point, wo, &mut bsdf);
         bsdf
     }

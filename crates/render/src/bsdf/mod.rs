@@ -15,6 +15,7 @@ mod lobes;
 mod materials;
 mod members;
 mod microfacet;
+mod recipe;
 mod scattering;
 mod transport;
 

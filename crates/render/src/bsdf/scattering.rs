@@ -29,6 +29,8 @@ pub(super) struct ShadingFrame {
     pub wo: Vec3,
     /// Squared roughness of the shadowing term of bump maps; 0: no term.
     pub bump_alpha_sq: f32,
+    /// Its normal is the geometric one, and there are no bumps.
+    pub is_flat: bool,
 }
 
 impl ShadingFrame {
@@ -78,9 +80,9 @@ pub struct Bsdf {
     pub(super) kinds: LobeSet,
 }
 
-impl Bsdf {
-    /// A surface that absorbs all light: what [`resolve_into`](super::Materials::resolve_into) starts with.
-    pub fn nothing() -> Self {
+/// A surface that absorbs all light: what [`resolve_into`](super::Materials::resolve_into) starts with.
+impl Default for Bsdf {
+    fn default() -> Self {
         Self {
             wo: Vec3::Z,
             ng: Vec3::Z,
@@ -91,7 +93,9 @@ impl Bsdf {
             kinds: LobeSet::NONE,
         }
     }
+}
 
+impl Bsdf {
     /// Whether there is a lobe of one of these kinds.
     #[inline]
     pub fn has(&self, set: LobeSet) -> bool {
@@ -143,8 +147,9 @@ impl Bsdf {
         match mode {
             TransportMode::Radiance => {
                 let scale = if local.z < 0.0 { 1.0 / (eta * eta) } else { 1.0 };
-                scale * frame.bump_shadow(self.ns.dot(wi))
+                if frame.bump_alpha_sq == 0.0 { scale } else { scale * frame.bump_shadow(self.ns.dot(wi)) }
             }
+            TransportMode::Importance if frame.is_flat => 1.0,
             TransportMode::Importance => {
                 let above = frame.wo.z * self.ng.dot(wi).abs();
                 let below = self.ng.dot(self.wo).abs() * local.z.abs();
@@ -299,7 +304,7 @@ impl Bsdf {
         const LEAST_COSINE: f32 = 1e-4;
         let cos = self.ng.dot(wi) * sign;
         if cos >= LEAST_COSINE {
-            return wi.normalize();
+            return wi;
         }
         (wi + self.ng * (sign * (LEAST_COSINE - cos))).normalize()
     }

@@ -97,6 +97,19 @@ fn means<T: Copy + Default + Send>(from: &Bitmap, width: u32, height: u32, pixel
     data
 }
 
+/// The largest whole number that is not above `x`, for finite `x`: the processor that the build is for has no instruction for
+/// it, but one that cuts off.
+#[inline]
+fn floor(x: f32) -> f32 {
+    // From here on every number is whole.
+    const WHOLE: f32 = 8_388_608.0;
+    if x.abs() >= WHOLE {
+        return x;
+    }
+    let cut = x as i32 as f32;
+    if cut > x { cut - 1.0 } else { cut }
+}
+
 /// A coordinate folded into 0..=1 by the wrap mode; 0 where it is not finite.
 #[inline]
 fn wrap_unit(x: f32, wrap: WrapMode) -> f32 {
@@ -104,9 +117,9 @@ fn wrap_unit(x: f32, wrap: WrapMode) -> f32 {
         return 0.0;
     }
     match wrap {
-        WrapMode::Repeat => x - x.floor(),
+        WrapMode::Repeat => x - floor(x),
         WrapMode::Mirror => {
-            let t = x - 2.0 * (0.5 * x).floor();
+            let t = x - 2.0 * floor(0.5 * x);
             if t > 1.0 { 2.0 - t } else { t }
         }
         WrapMode::Clamp => x.clamp(0.0, 1.0),
@@ -117,7 +130,9 @@ fn wrap_unit(x: f32, wrap: WrapMode) -> f32 {
 #[inline]
 fn wrap_index(i: i32, count: u32, wrap: WrapMode) -> u32 {
     match wrap {
-        WrapMode::Repeat => i.rem_euclid(count as i32) as u32,
+        WrapMode::Repeat if i < 0 => count - 1,
+        WrapMode::Repeat if i >= count as i32 => 0,
+        WrapMode::Repeat => i as u32,
         WrapMode::Mirror | WrapMode::Clamp => i.clamp(0, count as i32 - 1) as u32,
     }
 }
@@ -195,7 +210,7 @@ fn nearest(bitmap: &Bitmap, uv: Vec2, wrap: WrapMode) -> Vec4 {
 fn bilinear(bitmap: &Bitmap, uv: Vec2, wrap: WrapMode) -> Vec4 {
     let x = wrap_unit(uv.x, wrap) * bitmap.width as f32 - 0.5;
     let y = (1.0 - wrap_unit(uv.y, wrap)) * bitmap.height as f32 - 0.5;
-    let (x0, y0) = (x.floor(), y.floor());
+    let (x0, y0) = (floor(x), floor(y));
     let (fx, fy) = (x - x0, y - y0);
     let columns = [x0 as i32, x0 as i32 + 1].map(|i| wrap_index(i, bitmap.width, wrap));
     let rows = [y0 as i32, y0 as i32 + 1].map(|i| wrap_index(i, bitmap.height, wrap));

@@ -6,6 +6,7 @@ mod fixed;
 mod known_answers;
 mod mitsuba_values;
 mod nesting;
+mod recipes;
 mod reciprocity;
 mod shading_normals;
 mod subjects;
