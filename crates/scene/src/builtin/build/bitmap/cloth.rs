@@ -1,6 +1,7 @@
 //! Cloth: weave, stripes and a rug.
 
-use super::{draw, draw_rows, floor, fraction, mix, noise::Noise, step_between};
+use super::noise::{Columns, Noise};
+use super::{draw, draw_rows, floor, fraction, middles, mix, step_between};
 use crate::Bitmap;
 use photinus_geometry::Vec3;
 use std::sync::Arc;
@@ -22,15 +23,16 @@ pub fn weave(number: u32, warp: Vec3, weft: Vec3) -> Arc<Bitmap> {
 /// Vertical stripes: a wide and a narrow one on a ground, `repeats` times, tiling.
 pub fn stripes(number: u32, repeats: u32, ground: Vec3, wide: Vec3, narrow: Vec3) -> Arc<Bitmap> {
     let noise = Noise::new(number);
+    let columns = Columns::new(middles(512), 64, 1);
     draw_rows(512, 128, |v| {
-        let wool = noise.clouds_at(v, [64, 64], 1);
-        move |u| {
+        let (wool, columns) = (noise.clouds_at(v, [64, 64], 1), &columns);
+        move |column, u| {
             let t = fraction(u * repeats as f32);
             let soft = |low: f32, high: f32| {
                 step_between(low - 0.01, low + 0.01, t) * (1.0 - step_between(high - 0.01, high + 0.01, t))
             };
             let color = mix(mix(ground, wide, soft(0.1, 0.45)), narrow, soft(0.68, 0.76));
-            color * (0.95 + 0.1 * wool.at(u))
+            color * (0.95 + 0.1 * wool.at_column(columns, column))
         }
     })
 }
@@ -38,10 +40,11 @@ pub fn stripes(number: u32, repeats: u32, ground: Vec3, wide: Vec3, narrow: Vec3
 /// A rug with a border, corner pieces and a medallion, the same in all four quarters.
 pub fn rug(number: u32, field: Vec3, border: Vec3, accent: Vec3, light: Vec3) -> Arc<Bitmap> {
     let noise = Noise::new(number);
+    let columns = Columns::new(middles(768), 2, 2);
     draw_rows(768, 512, |v| {
         let wool = noise.clouds_at(v, [2, 16], 2);
-        let noise = &noise;
-        move |u| {
+        let (noise, columns) = (&noise, &columns);
+        move |column, u| {
             // One quarter is drawn; units: the half height is 1, the half width 1.5.
             let (x, y) = (1.5 * (2.0 * u - 1.0).abs(), (2.0 * v - 1.0).abs());
             let rim = (1.5 - x).min(1.0 - y);
@@ -78,7 +81,7 @@ pub fn rug(number: u32, field: Vec3, border: Vec3, accent: Vec3, light: Vec3) ->
             }
             // Knots, and bands of wool dyed on different days.
             let knot = 0.9 + 0.16 * noise.cell((u * 384.0) as i64, (v * 256.0) as i64);
-            c * knot * (0.94 + 0.12 * wool.at(u))
+            c * knot * (0.94 + 0.12 * wool.at_column(columns, column))
         }
     })
 }

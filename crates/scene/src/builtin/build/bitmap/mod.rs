@@ -22,21 +22,31 @@ use photinus_geometry::Vec3;
 use rayon::prelude::*;
 use std::sync::Arc;
 
+/// The u of the middle of each column.
+fn middles(width: u32) -> impl Iterator<Item = f32> + Clone {
+    (0..width).map(move |column| middle(column, width))
+}
+
+fn middle(column: u32, width: u32) -> f32 {
+    (column as f32 + 0.5) / width as f32
+}
+
 /// Samples a picture at the middles of its pixels.
 fn draw(width: u32, height: u32, color: impl Fn(f32, f32) -> Vec3 + Sync) -> Arc<Bitmap> {
     draw_rows(width, height, |v| {
         let color = &color;
-        move |u| color(u, v)
+        move |_, u| color(u, v)
     })
 }
 
-/// Samples a picture at the middles of its pixels; `row` prepares what a height's colours share.
-fn draw_rows<C: Fn(f32) -> Vec3>(width: u32, height: u32, row: impl Fn(f32) -> C + Sync) -> Arc<Bitmap> {
+/// Samples a picture at the middles of its pixels; `row` prepares what a height's colours share, and is then asked for
+/// that of each column and its u.
+fn draw_rows<C: Fn(usize, f32) -> Vec3>(width: u32, height: u32, row: impl Fn(f32) -> C + Sync) -> Arc<Bitmap> {
     let mut data = vec![[0; 4]; (width * height) as usize];
     data.par_chunks_exact_mut(width as usize).enumerate().for_each(|(line, pixels)| {
         let color = row(1.0 - (line as f32 + 0.5) / height as f32);
         for (column, pixel) in pixels.iter_mut().enumerate() {
-            let c = color((column as f32 + 0.5) / width as f32);
+            let c = color(column, middle(column as u32, width));
             let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
             *pixel = [byte(c.x), byte(c.y), byte(c.z), 255];
         }

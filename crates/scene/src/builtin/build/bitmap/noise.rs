@@ -40,7 +40,7 @@ impl Noise {
         let (mut weight, mut period) = (1.0, cells);
         for (i, octave) in row.octaves[..octaves].iter_mut().enumerate() {
             let limited = period.map(|p| p.min(CELLS as i32));
-            let shift = 17 * i;
+            let shift = SHIFT * i;
             let (low, high, t) = cell_of(v * limited[1] as f32, limited[1], shift);
             *octave = Octave { low: low * CELLS, high: high * CELLS, t, period: limited[0], shift, weight };
             row.total += weight;
@@ -50,6 +50,9 @@ impl Noise {
         row
     }
 }
+
+/// How far the lattice is shifted from one octave to the next.
+const SHIFT: usize = 17;
 
 /// Most octaves of a sum of noises.
 const MOST_OCTAVES: usize = 6;
@@ -77,9 +80,21 @@ impl Row<'_> {
     /// The value at `u`.
     #[inline]
     pub fn at(&self, u: f32) -> f32 {
+        self.sum(self.octaves[..self.count].iter().map(|o| cell_of(u * o.period as f32, o.period, o.shift)))
+    }
+
+    /// The value in a column of a picture, for which `columns` were made.
+    #[inline]
+    pub fn at_column(&self, columns: &Columns, column: usize) -> f32 {
+        let cells = &columns.cells[column * columns.octaves..][..columns.octaves];
+        self.sum(cells.iter().map(|&(x0, x1, tx)| (usize::from(x0), usize::from(x1), tx)))
+    }
+
+    /// The sum of the octaves at these cells and shares of the ways between them.
+    #[inline(always)]
+    fn sum(&self, cells: impl Iterator<Item = (usize, usize, f32)>) -> f32 {
         let mut sum = 0.0;
-        for o in &self.octaves[..self.count] {
-            let (x0, x1, tx) = cell_of(u * o.period as f32, o.period, o.shift);
+        for (o, (x0, x1, tx)) in self.octaves[..self.count].iter().zip(cells) {
             // The mask says to the compiler what is true already: no index leaves the lattice.
             let value = |row: usize, x: usize| self.lattice[(row + x) & (CELLS * CELLS - 1)];
             let below = value(o.low, x0) * (1.0 - tx) + value(o.low, x1) * tx;
@@ -87,6 +102,26 @@ impl Row<'_> {
             sum += o.weight * (below * (1.0 - o.t) + above * o.t);
         }
         sum / self.total
+    }
+}
+
+/// Where the columns of a picture lie in noises, the same at all heights: worked out once for a picture.
+pub struct Columns {
+    octaves: usize,
+    cells: Vec<(u8, u8, f32)>,
+}
+
+impl Columns {
+    /// For columns at these u and noises of so many octaves from so many cells across.
+    pub fn new(us: impl Iterator<Item = f32>, cells: i32, octaves: usize) -> Self {
+        let of_column = |u: f32| {
+            (0..octaves).map(move |i| {
+                let period = (cells << i).min(CELLS as i32);
+                let (x0, x1, tx) = cell_of(u * period as f32, period, SHIFT * i);
+                (x0 as u8, x1 as u8, tx)
+            })
+        };
+        Self { octaves, cells: us.flat_map(of_column).collect() }
     }
 }
 

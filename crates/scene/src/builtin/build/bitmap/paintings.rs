@@ -1,6 +1,7 @@
 //! Paintings for walls, each in a manner of its own.
 
-use super::{draw, draw_rows, hex, mix, noise::Noise, step_between};
+use super::noise::{Columns, Noise};
+use super::{draw, draw_rows, hex, middles, mix, step_between};
 use crate::Bitmap;
 use std::sync::Arc;
 
@@ -15,22 +16,23 @@ pub fn hills(number: u32) -> Arc<Bitmap> {
     };
     let crests: Vec<[f32; 6]> =
         (0..WIDTH).map(|x| std::array::from_fn(|k| crest(k, x as f32 / WIDTH as f32))).collect();
+    let columns = [Columns::new(middles(WIDTH), 3, 4), Columns::new(middles(WIDTH), 64, 1)];
     draw_rows(WIDTH, 384, |v| {
         let (clouds, canvas) = (noise.clouds_at(v, [3, 12], 4), noise.clouds_at(v, [64, 64], 1));
-        let crests = &crests;
-        move |u| {
-            let bands = v + 0.08 * clouds.at(u);
+        let (crests, [cloudy, weave]) = (&crests, &columns);
+        move |column, u| {
+            let bands = v + 0.08 * clouds.at_column(cloudy, column);
             let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, bands));
             let (dx, dy) = ((u - 0.64) * 1.33, v - 0.6);
             let sun = (dx * dx + dy * dy).sqrt();
             let mut c = mix(hex(0xFFF1C9), sky, step_between(0.055, 0.065, sun));
             c = mix(hex(0xFFD898), c, step_between(0.0, 0.4, sun).max(0.35));
-            for (&range, &crest) in ranges.iter().zip(&crests[(u * WIDTH as f32) as usize]) {
+            for (&range, &crest) in ranges.iter().zip(&crests[column]) {
                 if v < crest {
                     c = mix(range * 1.12, range * 0.85, step_between(0.0, 0.16, crest - v));
                 }
             }
-            c * (0.94 + 0.12 * canvas.at(u))
+            c * (0.94 + 0.12 * canvas.at_column(weave, column))
         }
     })
 }
@@ -65,11 +67,12 @@ pub fn circles(number: u32) -> Arc<Bitmap> {
         let middle = [0.1 + 0.8 * random(5), 0.08 + 0.84 * random(9)];
         (middle, 0.04 + 0.19 * random(13) * random(14), inks[k % inks.len()], inks[(k + 2) % inks.len()])
     });
+    let columns = [Columns::new(middles(384), 3, 4), Columns::new(middles(384), 64, 1)];
     draw_rows(384, 512, |v| {
         let (ground, canvas) = (noise.clouds_at(v, [3, 3], 4), noise.clouds_at(v, [64, 64], 1));
-        let discs = &discs;
-        move |u| {
-            let mut c = mix(hex(0xEFE3CB), hex(0xE3CFAE), ground.at(u));
+        let (discs, [plain, weave]) = (&discs, &columns);
+        move |column, u| {
+            let mut c = mix(hex(0xEFE3CB), hex(0xE3CFAE), ground.at_column(plain, column));
             for (k, &([x, y], radius, ink, heart)) in discs.iter().enumerate() {
                 let (dx, dy) = (u - x, (v - y) * 1.33);
                 let d_sq = dx * dx + dy * dy;
@@ -84,7 +87,7 @@ pub fn circles(number: u32) -> Arc<Bitmap> {
                 let core = 1.0 - step_between(0.3 * radius - 0.003, 0.3 * radius + 0.003, d);
                 c = mix(c, heart, core);
             }
-            c * (0.95 + 0.1 * canvas.at(u))
+            c * (0.95 + 0.1 * canvas.at_column(weave, column))
         }
     })
 }
