@@ -1,6 +1,10 @@
 //! The two image types: a linear RGB picture, and named layers of named channels.
 
+use rayon::prelude::*;
 use std::collections::BTreeMap;
+
+/// Pixels that one task copies.
+const PIXELS_A_TASK: usize = 1 << 15;
 
 /// A picture in linear RGB (Rec. 709 primaries, D65 white), rows from top to bottom.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -79,7 +83,7 @@ impl Layers {
         let channels = (0..3)
             .map(|c| Channel {
                 name: channel_names[c].to_string(),
-                samples: vectors.iter().map(|vector| vector[c]).collect(),
+                samples: vectors.par_iter().with_min_len(PIXELS_A_TASK).map(|vector| vector[c]).collect(),
             })
             .collect();
         self.layers.push(Layer { name: name.to_string(), channels });
@@ -118,7 +122,8 @@ impl Layers {
         } else {
             return None;
         };
-        let pixels = (0..self.width * self.height).map(|i| [planes[0][i], planes[1][i], planes[2][i]]).collect();
+        let places = (0..self.width * self.height).into_par_iter().with_min_len(PIXELS_A_TASK);
+        let pixels = places.map(|i| [planes[0][i], planes[1][i], planes[2][i]]).collect();
         Some(Image { width: self.width, height: self.height, pixels })
     }
 }

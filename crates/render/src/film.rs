@@ -1,6 +1,10 @@
 //! The film: sums over passes that do not depend on how the passes were split.
 
+use rayon::prelude::*;
 use serde::Serialize;
+
+/// Values of which one task makes means.
+const VALUES_A_TASK: usize = 1 << 16;
 
 /// A picture that a render can put out beside the beauty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -207,17 +211,12 @@ impl Film {
 
     /// Means over the passes; zeros where there are none.
     pub fn mean(&self) -> Vec<f32> {
-        let mut sum: Option<Vec<f32>> = None;
-        for level in self.levels.iter().flatten() {
-            sum = Some(match sum {
-                None => level.clone(),
-                Some(later) => level.iter().zip(&later).map(|(a, b)| a + b).collect(),
-            });
-        }
         let scale = 1.0 / self.passes.max(1) as f32;
-        let mut mean = sum.unwrap_or_else(|| vec![0.0; self.values]);
-        mean.iter_mut().for_each(|v| *v *= scale);
-        mean
+        let mut levels = self.levels.iter().flatten();
+        let Some(latest) = levels.next() else { return vec![0.0; self.values] };
+        let earlier: Vec<&[f32]> = levels.map(Vec::as_slice).collect();
+        let mean = |(i, latest): (usize, &f32)| earlier.iter().fold(*latest, |later, level| level[i] + later) * scale;
+        latest.par_iter().enumerate().with_min_len(VALUES_A_TASK).map(mean).collect()
     }
 
     /// Buffers that are held after `passes` passes: a sum for each one in their binary number, and the one that the last

@@ -4,7 +4,11 @@ use crate::Result;
 use photinus_image::tonemap::Tonemap;
 use photinus_image::{Image, Layers, write_exr, write_png};
 use photinus_render::{Aov, FilmLayout};
+use rayon::prelude::*;
 use std::path::Path;
+
+/// Pixels that one task copies.
+const PIXELS_A_TASK: usize = 1 << 15;
 
 /// A picture with its layers. The layer without a name is the picture itself, linear RGB radiance.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +23,8 @@ impl Picture {
         let mut layers = Layers::new(width as usize, height as usize);
         let stride = layout.channels();
         let rgb = |offset: usize| -> Vec<[f32; 3]> {
-            pixels.chunks_exact(stride).map(|p| [p[offset], p[offset + 1], p[offset + 2]]).collect()
+            let pixels = pixels.par_chunks_exact(stride).with_min_len(PIXELS_A_TASK);
+            pixels.map(|p| [p[offset], p[offset + 1], p[offset + 2]]).collect()
         };
         let one = |offset: usize| pixels.chunks_exact(stride).map(|p| p[offset]).collect::<Vec<f32>>();
         layers.push_rgb("", &rgb(0));

@@ -39,7 +39,7 @@ pub fn srgb8_to_linear(byte: u8) -> f32 {
     DECODED[byte as usize]
 }
 
-/// Parts of 0..1 that have their own entry point into the decoded values: narrow enough for one or two of them each.
+/// Parts of 0..1 that have their own entry point into the decoded values: narrow enough for one of them each at most.
 const PARTS: usize = 4096;
 
 /// How many decoded values lie below the lower end of each part.
@@ -63,11 +63,11 @@ pub fn linear_to_srgb8(linear: f32) -> u8 {
         return 255;
     }
     // A product with a power of two is exact; the conversion takes negative numbers and NaN to 0.
-    let mut above = usize::from(BELOW[(linear * PARTS as f32) as usize]);
-    while DECODED[above] < linear {
-        above += 1;
-    }
-    if above > 0 && linear - DECODED[above - 1] < DECODED[above] - linear { above as u8 - 1 } else { above as u8 }
+    let below = usize::from(BELOW[(linear * PARTS as f32) as usize]);
+    // Decoded values lie farther apart than parts are wide. No branches: which of two bytes is nearer is nothing to guess.
+    let above = below + usize::from(DECODED[below] < linear);
+    let before = above.saturating_sub(1);
+    above as u8 - u8::from((above > 0) & (linear - DECODED[before] < DECODED[above] - linear))
 }
 
 #[cfg(test)]
