@@ -74,13 +74,20 @@ impl<'w> Tracer<'w> {
         }
     }
 
-    fn closest_batch(&mut self, counters: &mut Counters) {
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), Hit::MISS);
+    /// The nearest hits of rays, whatever they are on. `numbers` are the rays' in the query that was asked.
+    fn nearest(
+        &mut self,
+        rays: &[Ray],
+        hits: &mut Vec<Hit>,
+        numbers: impl Iterator<Item = usize>,
+        counters: &mut Counters,
+    ) {
+        hits.clear();
+        hits.resize(rays.len(), Hit::MISS);
         let structure = &self.world.structure;
         timed(self.twin.is_on(), &mut counters.spent.rays, || {
-            for (run, counted) in self.twin.runs(self.rays.len()) {
-                let (rays, hits) = (&self.rays[run.clone()], &mut self.hits[run]);
+            for (run, counted) in self.twin.runs(rays.len()) {
+                let (rays, hits) = (&rays[run.clone()], &mut hits[run]);
                 if counted {
                     steady(&mut counters.sampled_rays, |work| structure.closest_hit_counted(rays, hits, work));
                 } else {
@@ -89,8 +96,16 @@ impl<'w> Tracer<'w> {
             }
         });
         if let Some(recording) = &mut self.recording {
-            recording.closest(&self.rays, &self.hits, self.pending.iter().copied());
+            recording.closest(rays, hits, numbers);
         }
+    }
+
+    /// The same for the rays that are still on their way.
+    fn closest_batch(&mut self, counters: &mut Counters) {
+        let (rays, mut hits) = (std::mem::take(&mut self.rays), std::mem::take(&mut self.hits));
+        let pending = std::mem::take(&mut self.pending);
+        self.nearest(&rays, &mut hits, pending.iter().copied(), counters);
+        (self.rays, self.hits, self.pending) = (rays, hits, pending);
     }
 
     fn any_batch(&mut self, rays: &[Ray], counters: &mut Counters) {
@@ -121,6 +136,9 @@ impl<'w> Tracer<'w> {
         counters: &mut Counters,
         mut draw: impl FnMut(usize) -> f32,
     ) {
+        if !self.world.passes_light {
+            return self.nearest(rays, hits, 0..rays.len(), counters);
+        }
         self.rays.clear();
         self.rays.extend_from_slice(rays);
         self.pending.clear();
@@ -128,9 +146,6 @@ impl<'w> Tracer<'w> {
         self.closest_batch(counters);
         hits.clear();
         hits.extend_from_slice(&self.hits);
-        if !self.world.passes_light {
-            return;
-        }
         for _ in 0..MAX_HOLES {
             let (mut next, mut retry) = (Vec::new(), Vec::new());
             for (slot, &i) in self.pending.iter().enumerate() {
