@@ -27,7 +27,7 @@ pub trait Kernel: Copy {
     /// as a mask; what lies behind them is left undefined.
     fn keep(self, from: Lanes<'_>, t_max: f32) -> ([f32; WIDTH], [Child; WIDTH], u8);
 
-    /// Asks for the four cache lines from `start`, a node or most of a block, to be near soon.
+    /// Asks for the five cache lines from `start`, a node or a block, to be near soon.
     fn prefetch(self, start: *const u8);
 }
 
