@@ -106,6 +106,7 @@ fn render_and_compare() {
             "photons.stored",
             "photons.absorbed",
             "photons.escaped",
+            "photons.split",
             "photons.power.emitted",
             "caustic_photons.emitted",
             "caustic_photons.power.stored",

@@ -130,7 +130,8 @@ pub(crate) fn plan(
     }
     for round in 1..=ROUNDS {
         let Some(guide) = starts.learn() else { return Ok(None) };
-        let aimed = PhotonPass { pass: round, count: ROUND, keep: Keep::Caustic, guide: Some(&guide), ..pass };
+        let aimed =
+            PhotonPass { pass: round, count: ROUND, keep: Keep::Caustic, guide: Some(&guide), window: None, ..pass };
         let (stored, _) = aimed.run(world, lights, observer)?;
         let seen = starts.add(&aimed, &stored, &visibility);
         if round == ROUNDS {

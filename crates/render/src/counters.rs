@@ -65,6 +65,8 @@ pub struct PhotonCounts {
     pub absorbed: u64,
     /// Paths that left the scene.
     pub escaped: u64,
+    /// Parts, beyond one each, that strong photons went on as.
+    pub split: u64,
     /// Paths cut at the longest allowed length.
     pub cut: u64,
     /// Power budget.
@@ -124,7 +126,7 @@ pub struct Counters {
 
 impl AddAssign for PhotonCounts {
     fn add_assign(&mut self, other: Self) {
-        add!(self, other; emitted, stored, stored_caustic, absorbed, escaped, cut);
+        add!(self, other; emitted, stored, stored_caustic, absorbed, escaped, cut, split);
         for c in 0..3 {
             self.power.emitted[c] += other.power.emitted[c];
             self.power.absorbed[c] += other.power.absorbed[c];

@@ -104,9 +104,10 @@ impl CutPixels {
         }
     }
 
-    /// Bytes at the end of a pass that looks at all pixels.
-    pub fn bytes(&self) -> usize {
-        self.seen.len() * (size_of::<Seen>() + size_of::<(u32, Seen)>() + size_of::<[bool; 2]>())
+    /// Bytes between passes, and what a pass adds where it looks at a quarter of the pixels.
+    pub fn bytes(&self) -> [usize; 2] {
+        let pixel = size_of::<Seen>() + size_of::<[bool; 2]>();
+        [self.seen.len() * pixel, self.seen.len() * size_of::<(u32, Seen)>() / 4]
     }
 
     /// Ends a pass: what it saw steers the next.

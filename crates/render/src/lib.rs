@@ -21,6 +21,7 @@ mod light;
 mod maps;
 mod memory;
 mod photon_pass;
+mod photon_window;
 mod pilot;
 mod recording;
 mod renderer;

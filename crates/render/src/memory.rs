@@ -45,8 +45,8 @@ pub(crate) struct Ahead {
     pub stored: [u64; 2],
     /// The photons of the first pass serve all.
     pub maps_once: bool,
-    /// Bytes of what passes know of their pixels.
-    pub marks: u64,
+    /// Bytes of what passes know of their pixels, and of what a pass adds to that.
+    pub marks: [u64; 2],
     /// Bytes of tables.
     pub lights: u64,
 }
@@ -54,7 +54,7 @@ pub(crate) struct Ahead {
 impl RenderMemory {
     /// The largest of the three moments that can be the peak.
     pub(crate) fn predict(ahead: &Ahead) -> Self {
-        let &Ahead { values, passes, tiles, stored: [global, caustic], marks, lights, .. } = ahead;
+        let &Ahead { values, passes, tiles, stored: [global, caustic], marks: [marks, new_marks], lights, .. } = ahead;
         let stored = global + caustic;
         let buffer = values * 4;
         let before = Film::held_before(passes);
@@ -68,7 +68,7 @@ impl RenderMemory {
         let left = (building / 4).min(most_left);
         let map_build = Self { film: at_build * buffer + marks, photons: building + left, lights };
         // The pass's own buffer, and its tiles before they are put together.
-        let film = (before + 1) * buffer + (buffer as f64 * tiles) as u64 + marks;
+        let film = (before + 1) * buffer + (buffer as f64 * tiles) as u64 + marks + new_marks;
         let eye_pass = Self { film, photons: stored * PHOTON_BYTES + left, lights };
         let kept = if ahead.maps_once { stored * PHOTON_BYTES } else { left };
         let writing = Self { film: after * buffer + buffer * WRITE_HALVES / 2 + marks, photons: kept, lights };

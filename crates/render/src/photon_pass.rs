@@ -6,6 +6,7 @@ use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::light::{EmissionGuide, EmissionPoint, Lights, VisibleRegion};
+use crate::photon_window::PhotonWindow;
 use crate::recording::NOT_YET;
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
@@ -51,6 +52,8 @@ pub(crate) struct PhotonPass<'g> {
     pub guide: Option<&'g EmissionGuide>,
     /// The caustic map is filled by this pass and another one.
     pub together: Option<Together<'g>>,
+    /// How strong photons should be that go on from diffuse surfaces; none: as they are.
+    pub window: Option<&'g PhotonWindow>,
     /// One ray in this many is counted, see [`Twin`].
     pub profile_every: u32,
 }
@@ -84,6 +87,7 @@ pub(crate) struct StoredPhotons {
     pub caustic_origins: Vec<u32>,
 }
 
+#[derive(Clone)]
 struct Walk {
     index: u32,
     /// Density of its start, over that of an unaimed one.
@@ -96,6 +100,8 @@ struct Walk {
     sampler: Sampler,
     /// Record of the latest ray.
     record: u32,
+    /// It has been looked at whether it should go on as several.
+    is_split: bool,
 }
 
 impl PhotonPass<'_> {
@@ -179,12 +185,13 @@ impl PhotonPass<'_> {
                     specular_only: true,
                     sampler,
                     record: NOT_YET,
+                    is_split: false,
                 });
             }
         }
         counters.rays.emitted += walks.len() as u64;
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
-        let mut bsdf = Bsdf::default();
+        let (mut bsdf, mut born) = (Bsdf::default(), Vec::new());
         while !walks.is_empty() {
             rays.clear();
             rays.extend(walks.iter().map(|w| w.ray));
@@ -210,16 +217,18 @@ impl PhotonPass<'_> {
                     return false;
                 }
                 let point = world.surface(&walk.ray, &hit, 0.0);
-                self.land(world, lights, walk, &point, &mut bsdf, &mut stored, &mut counters)
+                self.land(world, lights, walk, &point, &mut bsdf, &mut born, &mut stored, &mut counters)
             };
             timed(self.profile_every > 0, &mut surfaces, || walks.retain_mut(&mut land));
+            walks.append(&mut born);
             counters.spent.surfaces += surfaces;
         }
         tracer.finish();
         (stored, counters)
     }
 
-    /// What a photon does where it lands: it may be stored, and goes on or ends. Returns whether it goes on.
+    /// What a photon does where it lands: it may be stored, and goes on or ends, or goes on as several, of which the others are
+    /// `born`. Returns whether it goes on.
     fn land(
         &self,
         world: &World,
@@ -227,6 +236,7 @@ impl PhotonPass<'_> {
         walk: &mut Walk,
         point: &SurfacePoint,
         bsdf: &mut Bsdf,
+        born: &mut Vec<Walk>,
         stored: &mut StoredPhotons,
         counters: &mut Counters,
     ) -> bool {
@@ -247,6 +257,49 @@ impl PhotonPass<'_> {
             add(&mut counters.photons.power.absorbed, walk.flux);
             return false;
         }
+        let window = self.window.filter(|window| bsdf.has(LobeSet::GATHER) && window.contains(point.position));
+        let parts = match window {
+            Some(window) if !walk.is_split => self.split(window, walk, counters),
+            _ => 1,
+        };
+        let strength = window.map(|window| window.strength(self.count));
+        for part in 1..parts {
+            let stream = u64::from(part) << 32 | u64::from(self.pass);
+            let sampler = Sampler::new(self.seed, self.kind, stream, walk.index);
+            let mut other = Walk { sampler, ..walk.clone() };
+            if self.scatter(lights, &mut other, point, bsdf, strength, counters) {
+                born.push(other);
+            }
+        }
+        self.scatter(lights, walk, point, bsdf, strength, counters)
+    }
+
+    /// Makes a photon the first of several, each of so much less flux; returns how many.
+    fn split(&self, window: &PhotonWindow, walk: &mut Walk, counters: &mut Counters) -> u32 {
+        walk.is_split = true;
+        let mean = window.parts(walk.flux.max_element(), self.count);
+        if !(mean > 1.0) {
+            return 1;
+        }
+        let parts = (mean + walk.sampler.next_1d()) as u32;
+        let before = walk.flux;
+        walk.flux /= mean;
+        // What chance adds or takes.
+        add(&mut counters.photons.power.absorbed, before - walk.flux * parts as f32);
+        counters.photons.split += u64::from(parts - 1);
+        parts
+    }
+
+    /// Lets a photon go on from a surface, or end there. Where a `strength` is wanted, it is brought up to that.
+    fn scatter(
+        &self,
+        lights: &Lights,
+        walk: &mut Walk,
+        point: &SurfacePoint,
+        bsdf: &Bsdf,
+        strength: Option<f32>,
+        counters: &mut Counters,
+    ) -> bool {
         let choice = walk.sampler.next_1d();
         let survival = walk.sampler.next_1d();
         let u = walk.sampler.next_2d();
@@ -265,8 +318,10 @@ impl PhotonPass<'_> {
             return false;
         };
         let outgoing = walk.flux * weight;
-        // Survival keeps the largest channel of the flux, so that all photons weigh about the same.
-        let keep = (outgoing.max_element() / walk.flux.max_element().max(1e-30)).min(1.0);
+        // Survival keeps the largest channel of the flux, or brings it up to what is wanted, so that all photons weigh about the
+        // same.
+        let kept = strength.filter(|_| !specular).unwrap_or_else(|| walk.flux.max_element());
+        let keep = (outgoing.max_element() / kept.max(1e-30)).min(1.0);
         if !(survival < keep) {
             counters.photons.absorbed += 1;
             add(&mut counters.photons.power.absorbed, walk.flux);

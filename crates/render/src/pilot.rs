@@ -8,6 +8,7 @@ use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
 use crate::light::{Anchor, Lights, SkyView, VisibleRegion, cosine_hemisphere};
 use crate::photon_pass::{Keep, PhotonPass};
+use crate::photon_window::PhotonWindow;
 use crate::trace::Tracer;
 use crate::twin::Twin;
 use crate::usefulness;
@@ -29,6 +30,8 @@ const PHOTONS: u32 = 50_000;
 const MEMORY_PHOTONS: u32 = 4000;
 /// Neighbours whose distance measures density.
 pub(crate) const NEIGHBORS: usize = 32;
+/// Passes that look for the strength that photons should have.
+const WINDOW_ROUNDS: u32 = 3;
 /// Photons at which the density of the caustic map is measured.
 const CAUSTIC_PROBES: usize = 1024;
 /// Photons that an estimate of the first pass should find, for light after a diffuse bounce and for caustics.
@@ -61,6 +64,8 @@ pub(crate) struct PhotonOutlook {
     pub stored: [u64; 2],
     /// Photons of their own for caustics, where those are seen.
     pub caustics: Option<CausticPlan>,
+    /// How strong photons should be, where they are uneven.
+    pub window: Option<PhotonWindow>,
 }
 
 /// Follows one ray for each cell of a grid over the picture to the first surface that keeps photons.
@@ -241,7 +246,16 @@ pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleR
 /// The pilot's own photons: those of `pass`, fewer and not aimed.
 fn pilot_pass(pass: PhotonPass, photons: u32) -> PhotonPass {
     let count = photons.min(PHOTONS);
-    PhotonPass { kind: StreamKind::Pilot, pass: 0, count, guide: None, together: None, profile_every: 0, ..pass }
+    PhotonPass {
+        kind: StreamKind::Pilot,
+        pass: 0,
+        count,
+        guide: None,
+        together: None,
+        window: None,
+        profile_every: 0,
+        ..pass
+    }
 }
 
 /// Ways of photons from infinity that light what is seen, of a pass of `photons`; each with what it is worth.
@@ -273,12 +287,24 @@ pub(crate) fn photon_outlook(
     let only_memory = radius.filter(|_| pass.keep == Keep::All);
     let count = photons.min(if only_memory.is_some() { MEMORY_PHOTONS } else { PHOTONS });
     let pilot = PhotonPass { count, ..pilot_pass(pass, photons) };
-    let (mut stored, counters) = pilot.run(world, lights, observer)?;
+    let (mut stored, mut counters) = pilot.run(world, lights, observer)?;
+    let mut window = match pass.keep {
+        Keep::Indirect => PhotonWindow::learn(world, lights.region(), points, &stored.global, pass.seed),
+        Keep::All | Keep::Caustic => None,
+    };
+    for _ in 0..WINDOW_ROUNDS {
+        let Some(wanted) = &window else { break };
+        (stored, counters) = PhotonPass { window: Some(wanted), ..pilot }.run(world, lights, observer)?;
+        match wanted.eased(counters.photons.split, count) {
+            Some(eased) => window = Some(eased),
+            None => break,
+        }
+    }
     let per_pass = |stored: u64| (stored as f64 * f64::from(photons) / f64::from(count.max(1))) as u64;
     let counted = counters.photons;
     let stored_plain = [per_pass(counted.stored - counted.stored_caustic), per_pass(counted.stored_caustic)];
     if let Some(radii) = only_memory {
-        return Ok(PhotonOutlook { radii, stored: stored_plain, caustics: None });
+        return Ok(PhotonOutlook { radii, stored: stored_plain, caustics: None, window });
     }
     let global_search = search(std::mem::take(&mut stored.global));
     let scale = |target: f32| (target / NEIGHBORS as f32 * count as f32 / photons as f32).sqrt();
@@ -288,7 +314,12 @@ pub(crate) fn photon_outlook(
     let global = typical_distance(&positions, global_search.as_deref(), 0.5).map(|r| r * scale(GLOBAL_TARGET));
     let global = global.unwrap_or(fallback).max(width).max(1e-9);
     if pass.keep == Keep::All {
-        return Ok(PhotonOutlook { radii: Radii { global, caustic: global }, stored: stored_plain, caustics: None });
+        return Ok(PhotonOutlook {
+            radii: Radii { global, caustic: global },
+            stored: stored_plain,
+            caustics: None,
+            window,
+        });
     }
     let global_search = global_search.as_deref();
     if let Some(plan) = caustic_plan::plan(world, lights, points, pilot, &stored, global_search, photons, observer)? {
@@ -296,13 +327,13 @@ pub(crate) fn photon_outlook(
         let radii = radius.unwrap_or(Radii { global, caustic: plan.radius.min(global) });
         let own = (f64::from(plan.stored) * f64::from(plan.count)) as u64;
         let stored = [stored_plain[0], stored_plain[1] + own];
-        return Ok(PhotonOutlook { radii, stored, caustics: Some(plan) });
+        return Ok(PhotonOutlook { radii, stored, caustics: Some(plan), window });
     }
     let probes = spread(&stored.caustic);
     let caustic = typical_distance(&probes, search(stored.caustic).as_deref(), 0.5).map(|r| r * scale(CAUSTIC_TARGET));
     let caustic = caustic.unwrap_or(global).clamp((0.7 * width).min(global), global);
     let radii = radius.unwrap_or(Radii { global, caustic });
-    Ok(PhotonOutlook { radii, stored: stored_plain, caustics: None })
+    Ok(PhotonOutlook { radii, stored: stored_plain, caustics: None, window })
 }
 
 /// A search over pilot photons; none where they are few.

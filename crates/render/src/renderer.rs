@@ -13,6 +13,7 @@ use crate::light::{LightGuide, Lights, SkyView, anchors, shadow_rays};
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
 use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
+use crate::photon_window::PhotonWindow;
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
 use crate::world::World;
@@ -54,6 +55,8 @@ pub struct Renderer<'w> {
     radii: Radii,
     /// Photons of their own for caustics.
     caustics: Option<CausticPlan>,
+    /// How strong photons should be.
+    window: Option<PhotonWindow>,
     /// Photons stored by a pass, by the pilot: in the global map and in the caustic map.
     stored: [u64; 2],
     /// Light covers so much of the view that diffuse surfaces look for it by chance too.
@@ -127,6 +130,7 @@ impl<'w> Renderer<'w> {
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
             caustics: None,
+            window: None,
             stored: [0; 2],
             shared_maps: None,
             film: Film::new(0),
@@ -146,16 +150,20 @@ impl<'w> Renderer<'w> {
         }
         if renderer.settings.mode != Mode::Path {
             let pass = renderer.photon_pass(0);
-            PhotonOutlook { radii: renderer.radii, stored: renderer.stored, caustics: renderer.caustics } =
-                pilot::photon_outlook(
-                    world,
-                    &renderer.lights,
-                    &points,
-                    pass,
-                    photons,
-                    renderer.settings.radius,
-                    observer,
-                )?;
+            PhotonOutlook {
+                radii: renderer.radii,
+                stored: renderer.stored,
+                caustics: renderer.caustics,
+                window: renderer.window,
+            } = pilot::photon_outlook(
+                world,
+                &renderer.lights,
+                &points,
+                pass,
+                photons,
+                renderer.settings.radius,
+                observer,
+            )?;
         }
         Ok(renderer)
     }
@@ -208,7 +216,7 @@ impl<'w> Renderer<'w> {
             }),
             stored: self.stored,
             maps_once: matches!(self.settings.mode, Mode::Gather | Mode::Direct),
-            marks: self.cut_pixels.as_ref().map_or(0, CutPixels::bytes) as u64,
+            marks: self.cut_pixels.as_ref().map_or([0; 2], CutPixels::bytes).map(|bytes| bytes as u64),
             lights: (self.lights.bytes() + self.caustics.as_ref().map_or(0, |plan| plan.guide.bytes())) as u64,
         })
     }
@@ -233,6 +241,7 @@ impl<'w> Renderer<'w> {
                 plain: self.photons,
                 aimed: plan.count,
             }),
+            window: self.window.as_ref(),
             profile_every: self.settings.profile_every,
         }
     }
@@ -324,6 +333,7 @@ impl<'w> Renderer<'w> {
                 count: plan.count,
                 keep: Keep::Caustic,
                 guide: Some(&plan.guide),
+                window: None,
                 ..photon_pass
             };
             let (stored, counted) = own.run(self.world, &self.lights, observer)?;

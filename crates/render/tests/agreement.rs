@@ -63,12 +63,39 @@ fn outdoor_scene() -> Scene {
             [0.3 + patch, 0.4 + patch, 0.6 + 0.8 * patch, 1.0]
         })
         .collect();
+    scene.lights.push(sky(width, height, pixels));
+    scene
+}
+
+fn sky(width: u32, height: u32, pixels: Vec<[f32; 4]>) -> Light {
     let bitmap = std::sync::Arc::new(Bitmap { width, height, pixels: BitmapPixels::RgbaF32(pixels) });
-    scene.lights.push(Light::Environment(EnvironmentLight::Image {
-        bitmap,
-        scale: 1.0,
-        to_world: photinus_geometry::Affine3A::IDENTITY,
-    }));
+    Light::Environment(EnvironmentLight::Image { bitmap, scale: 1.0, to_world: photinus_geometry::Affine3A::IDENTITY })
+}
+
+/// A closed room with a window on a terrace: light from a sky of many brightnesses comes in straight and by the terrace.
+fn window_scene() -> Scene {
+    let mut scene = scene(camera(Vec3::new(-0.9, 0.1, 0.9), Vec3::new(0.4, -0.4, -1.0), 60.0), 32);
+    let white = scene.material(diffuse(0.7));
+    let two = Vec3::splat(2.0);
+    scene.quad(Vec3::new(-1.0, -1.0, 1.0), Vec3::X * two, Vec3::NEG_Z * two, white, None);
+    scene.quad(Vec3::new(-1.0, 1.0, -1.0), Vec3::X * two, Vec3::Z * two, white, None);
+    scene.quad(Vec3::new(-1.0, -1.0, -1.0), Vec3::X * two, Vec3::Y * two, white, None);
+    scene.quad(Vec3::new(1.0, -1.0, 1.0), Vec3::NEG_X * two, Vec3::Y * two, white, None);
+    scene.quad(Vec3::new(-1.0, -1.0, 1.0), Vec3::NEG_Z * two, Vec3::Y * two, white, None);
+    // The wall with the window, which is 0.7 wide and 0.8 high.
+    for (z, width, low, high) in
+        [(1.0, 0.6, -1.0, 1.0), (-0.3, 0.7, -1.0, 1.0), (0.4, 0.7, -1.0, -0.2), (0.4, 0.7, 0.6, 1.0)]
+    {
+        scene.quad(Vec3::new(1.0, low, z), Vec3::NEG_Z * width, Vec3::Y * (high - low), white, None);
+    }
+    scene.quad(Vec3::new(1.0, -1.0, 1.5), Vec3::X, Vec3::NEG_Z * 3.0, white, None);
+    let (width, height) = (64u32, 32u32);
+    let pixels = (0..width * height).map(|i| {
+        let (x, y) = (i % width, i / width);
+        let bright = [0.5, 1.0, 2.0, 4.0][((x / 4 + 3 * (y / 4)) % 7 % 4) as usize];
+        [bright, 0.9 * bright, 0.8 * bright, 1.0]
+    });
+    scene.lights.push(sky(width, height, pixels.collect()));
     scene
 }
 
@@ -127,20 +154,26 @@ fn blocks(pixels: &[Vec3]) -> Vec<Vec3> {
 /// samples each: their own noise is well below the tolerance, bias of the radius is not hidden by it.
 #[test]
 fn photons_find_the_light_of_the_path_tracer() {
-    for (name, scene) in [("box", box_scene(0.6)), ("outdoor", outdoor_scene()), ("smooth", smooth_scene())] {
+    for (name, scene) in
+        [("box", box_scene(0.6)), ("outdoor", outdoor_scene()), ("smooth", smooth_scene()), ("window", window_scene())]
+    {
+        // Few of the photons of the sky find the window: the spread of the mean over seeds is 1 % after 16 passes.
+        let (block_limit, mean_limit) = if name == "window" { (0.1, 0.02) } else { (0.05, 0.01) };
         let world = world(scene);
         let reference = blocks(&render(&world, Settings { spp: 32, ..settings(Mode::Path) }, 64).0);
         let total: f32 = reference.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
         for (mode, passes) in [(Mode::Progressive, 64), (Mode::Gather, 16)] {
             let photons = if mode == Mode::Gather { 1_500_000 } else { 80_000 };
             let settings = Settings { photons: Some(photons), spp: 4, ..settings(mode) };
-            let found = blocks(&render(&world, settings, passes).0);
+            let (pixels, counters) = render(&world, settings, passes);
+            let found = blocks(&pixels);
+            assert!(name != "window" || counters.photons.split > 0);
             for (i, (a, b)) in found.iter().zip(&reference).enumerate() {
                 let error = (*a - *b).abs().max_element() / (b.max_element() + 0.1 * total);
-                assert!(error < 0.05, "{name}, {mode:?}, block {i}: {a}, path {b}");
+                assert!(error < block_limit, "{name}, {mode:?}, block {i}: {a}, path {b}");
             }
             let sum: f32 = found.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
-            assert!((sum / total - 1.0).abs() < 0.01, "{name}, {mode:?}: mean {sum}, path {total}");
+            assert!((sum / total - 1.0).abs() < mean_limit, "{name}, {mode:?}: mean {sum}, path {total}");
         }
     }
 }
@@ -160,7 +193,7 @@ fn bits(world: &photinus_render::World, settings: &Settings, threads: usize) -> 
 fn any_number_of_threads_gives_the_same_bits() {
     let mut outdoor = outdoor_scene();
     outdoor.film.filter = Filter::Tent { radius: 1.0 };
-    for scene in [box_scene(0.2), outdoor] {
+    for scene in [box_scene(0.2), outdoor, window_scene()] {
         let world = world(scene);
         for mode in Mode::ALL {
             let settings = Settings { photons: Some(30_000), aovs: Aov::ALL.to_vec(), ..settings(mode) };

@@ -243,10 +243,10 @@ fn photon_power_is_accounted_for() {
         }
         assert_eq!(max_depth.is_some(), power.cut[0] > 0.0);
         let photons = counters.photons;
-        assert_eq!(photons.emitted, photons.absorbed + photons.escaped + photons.cut);
+        assert_eq!(photons.emitted + photons.split, photons.absorbed + photons.escaped + photons.cut);
         assert!(photons.stored_caustic > 0 && photons.stored > photons.stored_caustic);
         let caustic = counters.caustic_photons;
-        assert_eq!(caustic.emitted, caustic.absorbed + caustic.escaped + caustic.cut);
+        assert_eq!((caustic.emitted, caustic.split), (caustic.absorbed + caustic.escaped + caustic.cut, 0));
         assert!(caustic.stored == caustic.stored_caustic);
         // Aimed photons land where caustics are far more often than unaimed ones.
         let share = |p: photinus_render::PhotonCounts| p.stored_caustic as f64 / p.emitted as f64;

@@ -70,6 +70,8 @@ pub struct PhotonStats {
     pub escaped: u64,
     /// Reached the longest allowed path.
     pub cut: u64,
+    /// Parts, beyond one each, that strong ones went on as: emitted + split = absorbed + escaped + cut.
+    pub split: u64,
     /// Where the power went, W, RGB: emitted = absorbed + escaped + cut.
     pub power: PhotonPower,
 }
@@ -189,6 +191,7 @@ impl PhotonStats {
             absorbed: photons.absorbed,
             escaped: photons.escaped,
             cut: photons.cut,
+            split: photons.split,
             power: photons.power,
         }
     }

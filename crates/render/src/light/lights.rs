@@ -146,15 +146,23 @@ impl Lights {
         parts.iter().zip(&members).for_each(|(&(i, _), member)| starts[i as usize] += member.power);
         let near = powers.len();
         powers.extend(distant.iter().map(|d| disc * mean(d.irradiance)));
+        starts.extend(&powers[near..]);
         if let Some(sky) = &sky {
             let bins = sky.bin_powers();
-            let weights: Vec<f64> = bins.iter().enumerate().map(|(b, p)| p * f64::from(view.factor(b))).collect();
-            let sum: f64 = weights.iter().sum();
+            let shares = |weights: Vec<f64>| {
+                let sum: f64 = weights.iter().sum();
+                weights.into_iter().map(move |w| if sum > 0.0 { w / sum } else { 0.0 })
+            };
+            let seen: Vec<f64> =
+                shares(bins.iter().enumerate().map(|(b, p)| p * f64::from(view.factor(b))).collect()).collect();
             let power = 4.0 * f64::from(PI) * disc * mean(sky.mean()) * view.openness();
-            powers.extend(weights.iter().map(|w| if sum > 0.0 { w / sum * power } else { 0.0 }));
+            powers.extend(seen.iter().map(|share| share * power));
+            // What is not seen lights what stands before windows: half of the photons start as the sky shines.
+            starts.extend(seen.iter().zip(shares(bins)).map(|(seen, plain)| 0.5 * (seen + plain) * power));
         }
-        powers.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = 0.0);
-        starts.extend(&powers[near..]);
+        for powers in [&mut powers, &mut starts] {
+            powers.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = 0.0);
+        }
         let emission = LightChoice::new(if starts.iter().any(|&p| p > 0.0) { &starts } else { &[] });
         let dark = powers.iter().all(|&p| p == 0.0);
         let table = if dark { AliasTable::default() } else { AliasTable::new(&powers) };
