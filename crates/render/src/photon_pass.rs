@@ -104,6 +104,14 @@ struct Walk {
     is_split: bool,
 }
 
+/// What photons of a batch use one after the other.
+#[derive(Default)]
+struct Scratch {
+    bsdf: Bsdf,
+    /// Parts of strong photons, beyond the first, that go on.
+    born: Vec<Walk>,
+}
+
 impl PhotonPass<'_> {
     /// Sends out the photons. Equal arguments give equal photons in equal order on any number of threads.
     pub fn run(
@@ -191,7 +199,7 @@ impl PhotonPass<'_> {
         }
         counters.rays.emitted += walks.len() as u64;
         let (mut rays, mut hits) = (Vec::new(), Vec::new());
-        let (mut bsdf, mut born) = (Bsdf::default(), Vec::new());
+        let mut scratch = Scratch::default();
         while !walks.is_empty() {
             rays.clear();
             rays.extend(walks.iter().map(|w| w.ray));
@@ -217,10 +225,10 @@ impl PhotonPass<'_> {
                     return false;
                 }
                 let point = world.surface(&walk.ray, &hit, 0.0);
-                self.land(world, lights, walk, &point, &mut bsdf, &mut born, &mut stored, &mut counters)
+                self.land(world, lights, walk, &point, &mut scratch, &mut stored, &mut counters)
             };
             timed(self.profile_every > 0, &mut surfaces, || walks.retain_mut(&mut land));
-            walks.append(&mut born);
+            walks.append(&mut scratch.born);
             counters.spent.surfaces += surfaces;
         }
         tracer.finish();
@@ -228,15 +236,14 @@ impl PhotonPass<'_> {
     }
 
     /// What a photon does where it lands: it may be stored, and goes on or ends, or goes on as several, of which the others are
-    /// `born`. Returns whether it goes on.
+    /// born. Returns whether it goes on.
     fn land(
         &self,
         world: &World,
         lights: &Lights,
         walk: &mut Walk,
         point: &SurfacePoint,
-        bsdf: &mut Bsdf,
-        born: &mut Vec<Walk>,
+        Scratch { bsdf, born }: &mut Scratch,
         stored: &mut StoredPhotons,
         counters: &mut Counters,
     ) -> bool {
