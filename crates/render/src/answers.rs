@@ -1,6 +1,6 @@
 //! How the estimates that a batch of paths asks for are made from the maps and put into the picture.
 
-use crate::companions::SHIFTS;
+use crate::companions::Spread;
 use crate::counters::Counters;
 use crate::eye_pass::EyePass;
 use crate::film::Aov;
@@ -26,8 +26,7 @@ impl EyePass<'_> {
         let sample = [tile.sample, self.pass * self.spp + tile.sample];
         let origin = [self.crop[0], self.crop[1]];
         let looker = Looker { world: self.world, kernel, pixels, seed: self.seed, origin, sample };
-        let [x0, y0, width, _] = tile.place;
-        let pixel = |path: u32| [x0 + path % width, y0 + path / width];
+        let pixel = |path: u32| tile.window_pixel(path);
         let look = |(e, found): (&Estimate, &Estimated)| {
             let mine = found.radiance.element_sum();
             let others = tile.light(e.path).element_sum();
@@ -57,11 +56,19 @@ impl EyePass<'_> {
             tile.add_scalar(e.path, Aov::PhotonDensity, found.density / share);
         }
         if let Some(caustic) = &maps.caustic {
-            for (list, shifts) in [(list, &[[0.0; 2]; 1][..]), (companions, &SHIFTS[..])] {
+            let mut spreads = vec![Spread::NONE; if companions.is_empty() { 0 } else { tile.weights.len() }];
+            for list in [list, companions] {
                 caustic.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-                for (i, (e, found)) in list.iter().zip(&out).enumerate() {
-                    tile.add_shifted(e.path, shifts[i % shifts.len()], Part::Caustic, found, 1.0 / e.places as f32);
+                for (e, found) in list.iter().zip(&out) {
+                    tile.add_shifted(e.path, e.shift, Part::Caustic, found, 1.0 / e.places as f32);
+                    if e.places > 1 {
+                        spreads[e.path as usize].add(found);
+                    }
                 }
+            }
+            let rims = (0u32..).zip(&spreads).filter(|(_, spread)| spread.is_rim());
+            if let Some(pixels) = self.cut_pixels {
+                rims.for_each(|(pixel, _)| pixels.saw_rim(tile.window_pixel(pixel)));
             }
         }
         scratch.hand_over(tracer);

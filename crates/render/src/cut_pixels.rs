@@ -84,6 +84,9 @@ pub(crate) struct CutPixels {
     /// By the passes before, row by row.
     before: Vec<bool>,
     now: Vec<AtomicBool>,
+    /// Pixels that a caustic's rim crosses, by the passes before and by this one.
+    rims_before: Vec<bool>,
+    rims_now: Vec<AtomicBool>,
     seen: Vec<Seen>,
     /// What this pass adds, by pixel, tile by tile; those of a pixel stand in its order.
     new: Mutex<Vec<Vec<(u32, Seen)>>>,
@@ -93,12 +96,14 @@ impl CutPixels {
     /// Nothing is known of a window of this size.
     pub fn new(width: u32, height: u32) -> Self {
         let count = width as usize * height as usize;
-        let now = (0..count).map(|_| AtomicBool::new(false)).collect();
+        let none = || (0..count).map(|_| AtomicBool::new(false)).collect();
         Self {
             width: width as usize,
             passes: 0,
             before: vec![false; count],
-            now,
+            now: none(),
+            rims_before: vec![false; count],
+            rims_now: none(),
             seen: vec![Seen::default(); count],
             new: Mutex::default(),
         }
@@ -106,7 +111,7 @@ impl CutPixels {
 
     /// Bytes between passes, and what a pass adds where it looks at a quarter of the pixels.
     pub fn bytes(&self) -> [usize; 2] {
-        let pixel = size_of::<Seen>() + size_of::<[bool; 2]>();
+        let pixel = size_of::<Seen>() + size_of::<[bool; 4]>();
         [self.seen.len() * pixel, self.seen.len() * size_of::<(u32, Seen)>() / 4]
     }
 
@@ -115,7 +120,8 @@ impl CutPixels {
         for (pixel, seen) in self.take_new().into_iter().flatten() {
             self.seen[pixel as usize] = seen;
         }
-        for (before, now) in self.before.iter_mut().zip(&mut self.now) {
+        let marks = self.before.iter_mut().zip(&mut self.now);
+        for (before, now) in marks.chain(self.rims_before.iter_mut().zip(&mut self.rims_now)) {
             *before |= std::mem::take(now.get_mut());
         }
         self.passes += 1;
@@ -124,11 +130,21 @@ impl CutPixels {
     /// Forgets what an unfinished pass saw: the next one begins as that did.
     pub fn forget(&mut self) {
         self.take_new();
-        self.now.iter_mut().for_each(|now| *now.get_mut() = false);
+        self.now.iter_mut().chain(&mut self.rims_now).for_each(|now| *now.get_mut() = false);
     }
 
     fn take_new(&mut self) -> Vec<Vec<(u32, Seen)>> {
         std::mem::take(self.new.get_mut().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// A caustic's rim crosses a pixel.
+    pub fn saw_rim(&self, place: [u32; 2]) {
+        self.rims_now[self.index(place)].store(true, Ordering::Relaxed);
+    }
+
+    /// Whether a pass before saw one.
+    pub fn has_rim(&self, place: [u32; 2]) -> bool {
+        self.rims_before[self.index(place)]
     }
 
     /// What a tile saw, for the next pass.

@@ -170,6 +170,7 @@ impl EyePass<'_> {
                 throughput: node.throughput,
                 path: node.pixel,
                 places: 1,
+                shift: [0.0; 2],
                 ray: node.record,
                 offset: point.offset,
                 is_first: node.level == 0,

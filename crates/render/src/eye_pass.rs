@@ -365,6 +365,7 @@ impl EyePass<'_> {
             throughput,
             path: path.pixel,
             places: 1,
+            shift: [0.0; 2],
             ray,
             offset,
             is_first,

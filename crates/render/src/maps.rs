@@ -41,6 +41,8 @@ pub(crate) struct Estimate {
     pub path: u32,
     /// Places that the caustic map is asked about in its stead, itself included.
     pub places: u32,
+    /// Where it lies among them: its shift in the unit square of the pixel's filter.
+    pub shift: [f32; 2],
     /// Record of the ray that asks.
     pub ray: u32,
     /// How far the surface may be off the place asked about, by rounding; scene units.

@@ -134,6 +134,12 @@ impl Tile<'_> {
         }
     }
 
+    /// Where a pixel of the tile lies in the window.
+    pub fn window_pixel(&self, pixel: u32) -> [u32; 2] {
+        let [x0, y0, width, _] = self.place;
+        [x0 + pixel % width, y0 + pixel / width]
+    }
+
     /// The light of a pixel by its own samples, a mean sample's.
     pub fn light(&self, pixel: u32) -> Vec3 {
         let light = Vec3::from_slice(&self.out[pixel as usize * self.layout.channels()..]);
