@@ -26,6 +26,10 @@ const CHUNK: u32 = 2048;
 /// it.
 const GROUP: usize = 32;
 
+/// More parts than a photon is split into at once, and lineages that split no further: their numbers fit 32 bits.
+const LARGEST_FAMILY: u32 = 128;
+const MOST_LINEAGES: u32 = u32::MAX / LARGEST_FAMILY - 1;
+
 /// Which photons are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Keep {
@@ -100,8 +104,8 @@ struct Walk {
     sampler: Sampler,
     /// Record of the latest ray.
     record: u32,
-    /// It has been looked at whether it should go on as several.
-    is_split: bool,
+    /// Which part of which part of its photon it is; 0: the first of all.
+    lineage: u32,
 }
 
 /// What photons of a batch use one after the other.
@@ -193,7 +197,7 @@ impl PhotonPass<'_> {
                     specular_only: true,
                     sampler,
                     record: NOT_YET,
-                    is_split: false,
+                    lineage: 0,
                 });
             }
         }
@@ -264,16 +268,15 @@ impl PhotonPass<'_> {
             add(&mut counters.photons.power.absorbed, walk.flux);
             return false;
         }
-        let window = self.window.filter(|window| bsdf.has(LobeSet::GATHER) && window.contains(point.position));
-        let parts = match window {
-            Some(window) if !walk.is_split => self.split(window, walk, counters),
-            _ => 1,
-        };
-        let strength = window.map(|window| window.strength(self.count));
+        let window = self.window.filter(|_| bsdf.has(LobeSet::GATHER));
+        let parts = window.map_or(1, |window| self.split(window, walk, point.position, counters));
+        let strength =
+            window.filter(|window| window.contains(point.position)).map(|window| window.strength(self.count));
         for part in 1..parts {
-            let stream = u64::from(part) << 32 | u64::from(self.pass);
+            let lineage = walk.lineage * LARGEST_FAMILY + part;
+            let stream = u64::from(lineage) << 32 | u64::from(self.pass);
             let sampler = Sampler::new(self.seed, self.kind, stream, walk.index);
-            let mut other = Walk { sampler, ..walk.clone() };
+            let mut other = Walk { sampler, lineage, ..walk.clone() };
             if self.scatter(lights, &mut other, point, bsdf, strength, counters) {
                 born.push(other);
             }
@@ -282,10 +285,9 @@ impl PhotonPass<'_> {
     }
 
     /// Makes a photon the first of several, each of so much less flux; returns how many.
-    fn split(&self, window: &PhotonWindow, walk: &mut Walk, counters: &mut Counters) -> u32 {
-        walk.is_split = true;
-        let mean = window.parts(walk.flux.max_element(), self.count);
-        if !(mean > 1.0) {
+    fn split(&self, window: &PhotonWindow, walk: &mut Walk, position: Vec3, counters: &mut Counters) -> u32 {
+        let mean = window.parts(walk.flux.max_element(), self.count, position);
+        if !(mean > 1.0) || walk.lineage >= MOST_LINEAGES {
             return 1;
         }
         let parts = (mean + walk.sampler.next_1d()) as u32;

@@ -25,6 +25,8 @@ const BOUNCES: u64 = 2;
 const LIFT: f32 = 1e-3;
 /// Photons that one becomes at most.
 const MOST: f32 = 64.0;
+/// How much stronger photons may be where they do not light what is seen.
+const ELSEWHERE: f32 = 8.0;
 /// Parts that are split off at most, for each photon that is sent out.
 const MOST_SPLIT: f32 = 4.0;
 /// Photons that are worth as many equal ones as this share of their number, or more, stay as they are.
@@ -132,9 +134,10 @@ impl PhotonWindow {
         self.flux / count as f32
     }
 
-    /// As how many photons one of this strength should go on, on the mean: 1 to [`MOST`].
-    pub fn parts(&self, strength: f32, count: u32) -> f32 {
-        (strength / self.strength(count)).clamp(1.0, MOST)
+    /// As how many photons one of this strength should go on from a place, on the mean: 1 to [`MOST`].
+    pub fn parts(&self, strength: f32, count: u32, position: Vec3) -> f32 {
+        let slack = if self.contains(position) { 1.0 } else { ELSEWHERE };
+        (strength / (slack * self.strength(count))).clamp(1.0, MOST)
     }
 }
 
@@ -151,12 +154,15 @@ mod tests {
             flux: 1000.0,
         };
         assert_eq!(window.strength(500), 2.0);
-        for (strength, parts) in [(0.1, 1.0), (2.0, 1.0), (7.0, 3.5), (1e9, MOST), (f32::NAN, f32::NAN)] {
-            let found = window.parts(strength, 500);
-            assert!(found == parts || (found.is_nan() && parts.is_nan()), "{strength}: {found}");
-        }
-        let cell = window.cell(Vec3::new(0.5, -0.25, 0.99)).unwrap();
+        let inside = Vec3::new(0.5, -0.25, 0.99);
+        let cell = window.cell(inside).unwrap();
         window.cells[cell] = true;
+        for (strength, parts) in [(0.1, 1.0), (2.0, 1.0), (7.0, 3.5), (1e9, MOST), (f32::NAN, f32::NAN)] {
+            for (position, slack) in [(inside, 1.0), (Vec3::ZERO, ELSEWHERE)] {
+                let found = window.parts(strength * slack, 500, position);
+                assert!(found == parts || (found.is_nan() && parts.is_nan()), "{strength}: {found}");
+            }
+        }
         assert!(window.contains(Vec3::new(0.51, -0.24, 0.98)));
         for outside in [Vec3::ZERO, Vec3::splat(1.0), Vec3::splat(-1.01), Vec3::NAN, Vec3::INFINITY] {
             assert!(!window.contains(outside));
