@@ -166,11 +166,71 @@ fn nearest_rows<const SAME_NORMAL: bool>(shared: &mut Shared, query: &PreparedQu
         // SAFETY: that many were written.
         unsafe { some.set_len(between) };
         pad(some);
-        kth_least(some, low, k - below)
+        let among = Among { low, high: BRACKET[1] * guess_sq, count: between };
+        kth_of_few(some, among, k - below).unwrap_or_else(|| kth_least(some, low, k - below))
     } else {
         kth_least(distances_sq.as_flattened(), -1.0, k)
     };
     Found { count, limit_sq }
+}
+
+/// Numbers spread over an interval: above `low`, up to `high`.
+#[derive(Clone, Copy)]
+struct Among {
+    low: f32,
+    high: f32,
+    count: usize,
+}
+
+/// Numbers that the `k`-th may be off the place in proportion, more or less.
+const ASTRAY: f32 = 6.0;
+
+/// The `k`-th least (from 1) of full lanes of numbers, infinities behind `among.count` of them; where the numbers about the place in
+/// proportion are few enough and it is one of them.
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn kth_of_few(values: &[f32], among: Among, k: usize) -> Option<f32> {
+    let (lanes, _) = values.as_chunks::<LANES>();
+    let step = (among.high - among.low) / among.count as f32;
+    let guess = among.low + step * (k as f32 - 0.5);
+    let limit = _mm512_set1_ps(guess);
+    let up_to_guess = lanes
+        .iter()
+        .map(|lanes| _mm512_cmp_ps_mask::<_CMP_LE_OQ>(floats(lanes), limit).count_ones() as usize)
+        .sum::<usize>();
+    // How many numbers farther up, or down.
+    let off = k as f32 - up_to_guess as f32;
+    let (low, high) =
+        if off > 0.0 { (guess, guess + step * (off + ASTRAY)) } else { (guess + step * (off - ASTRAY), guess) };
+    let (low, high) = (_mm512_set1_ps(low), _mm512_set1_ps(high));
+    let mut few = [f32::INFINITY; 2 * LANES];
+    let (mut below, mut count) = (0, 0);
+    for lanes in lanes {
+        let v = floats(lanes);
+        let above = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(v, low);
+        let inside = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(above, v, high);
+        if count > LANES {
+            return None;
+        }
+        // SAFETY: sixteen places lie behind the first `count`, which is sixteen at most.
+        unsafe {
+            _mm512_storeu_ps(
+                few.as_mut_ptr().add(count),
+                _mm512_mask_compress_ps(_mm512_set1_ps(f32::INFINITY), inside, v),
+            )
+        };
+        below += (!above).count_ones() as usize;
+        count += inside.count_ones() as usize;
+    }
+    if count > LANES || k <= below || k > below + count {
+        return None;
+    }
+    // The largest of those that fewer than `k` are less than; their bits order as they do, as none is negative.
+    let few: &[f32; LANES] = few.first_chunk()?;
+    let all = floats(few);
+    let wanted = (k - below) as u32;
+    let rank = |value: f32| _mm512_cmp_ps_mask::<_CMP_LT_OQ>(all, _mm512_set1_ps(value)).count_ones();
+    let kth = few.iter().map(|value| if rank(*value) < wanted { value.to_bits() } else { 0 }).max()?;
+    Some(f32::from_bits(kth))
 }
 
 /// The largest finite number; 0 without any.
