@@ -146,8 +146,26 @@ impl Compiled {
     }
 
     /// The finished world, with the structure that answers its rays.
-    pub fn with_structure(mut self, structure: Box<dyn Structure>, model: SurfaceModel) -> World {
+    pub fn with_structure(self, structure: Box<dyn Structure>, model: SurfaceModel) -> World {
         let materials = Materials::new(&self.scene, model);
+        self.with(structure, materials)
+    }
+
+    /// The same with a structure that is built meanwhile: neither that nor the pictures of materials keep all threads busy.
+    ///
+    /// # Errors
+    /// Those of `build`.
+    pub fn build_structure<E: Send>(
+        self,
+        model: SurfaceModel,
+        build: impl FnOnce(Arc<Primitives>) -> Result<Box<dyn Structure>, E> + Send,
+    ) -> Result<World, E> {
+        let primitives = Arc::clone(&self.primitives);
+        let (structure, materials) = rayon::join(|| build(primitives), || Materials::new(&self.scene, model));
+        Ok(self.with(structure?, materials))
+    }
+
+    fn with(mut self, structure: Box<dyn Structure>, materials: Materials) -> World {
         for shape in &mut self.shapes {
             shape.reads = materials.reads(shape.material) | shape.emission.map_or(Reads::NONE, Reads::of_color);
         }

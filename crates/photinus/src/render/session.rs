@@ -98,13 +98,14 @@ impl Session {
             .build()
             .map_err(|e| Error::setting("--threads", format!("they cannot be started: {e}")))?;
         let (begun, cpu) = (Instant::now(), cpu_seconds());
-        let (mut world, structure) = pool.install(|| -> Result<(World, StructureSummary)> {
-            let compiled = Compiled::new(scene);
+        let mut world = pool.install(|| {
+            let options = &options;
             let build = BuildOptions { method: options.intersect.clone(), ..BuildOptions::default() };
-            let structure = photinus_accel::build(&options.accel, compiled.primitives().clone(), &build)?;
-            let summary = structure.summary();
-            Ok((compiled.with_structure(structure, options.surface_model), summary))
+            Compiled::new(scene).build_structure(options.surface_model, |primitives| {
+                photinus_accel::build(&options.accel, primitives, &build)
+            })
         })?;
+        let structure = world.structure().summary();
         let recorder = match &options.record_queries {
             Some(path) => Some(Arc::new(Recorder::new(path, &world)?)),
             None => None,
