@@ -99,10 +99,16 @@ pub trait Search: Send + Sync {
     /// As [`Search::visit`], with the work added to `counters`.
     fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters);
 
-    /// A number that is near for queries that the nearest are looked for together: sorting a large batch by it before it is
-    /// cut into pieces saves time. Results do not depend on it.
+    /// A number that is near for queries that lie close to one another, see [`Search::gather_nearest_ordered`]. Results do not depend on
+    /// it.
     fn neighbourhood(&self, _query: &GatherQuery) -> u64 {
         0
+    }
+
+    /// [`Search::neighbourhood`] of each query; `keys` is cleared first.
+    fn neighbourhoods(&self, queries: &[GatherQuery], keys: &mut Vec<u64>) {
+        keys.clear();
+        keys.extend(queries.iter().map(|query| self.neighbourhood(query)));
     }
 
     /// As [`Search::gather`] over the `k` nearest of what it would sum: where those within the radius are more, only up
@@ -110,6 +116,12 @@ pub trait Search: Send + Sync {
     /// count, so that there can be more than `k`; 0 finds nothing.
     fn gather_nearest(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
         gather_nearest_by_collecting(self, queries, k, kernel, out);
+    }
+
+    /// As [`Search::gather_nearest`], and faster where queries come in the order of their [`Search::neighbourhood`]; in any
+    /// other order the results are the same.
+    fn gather_nearest_ordered(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
+        self.gather_nearest(queries, k, kernel, out);
     }
 
     /// As [`Search::gather_nearest`] with the work counted: the same results, more slowly, all on the calling thread.

@@ -2,13 +2,13 @@
 //! children both followed to a level limit, no shadow rays (Figure 3: FireViewerRay, CalculateRayColour).
 
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
-use crate::control::{Cancelled, Observer};
-use crate::counters::{Counters, timed};
+use crate::counters::timed;
 use crate::eye_pass::EyePass;
-use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps};
+use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps, Scatter};
+use crate::pool::Pooled;
 use crate::recording::NOT_YET;
 use crate::tile::Tile;
-use crate::twin::Queries;
+use crate::waves::Started;
 use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
@@ -16,9 +16,6 @@ use photinus_profile::queries::RayKind;
 
 /// Levels followed where neither the scene nor the user limits them: 2^8 rays a pixel at the very most.
 pub(crate) const DEFAULT_LEVELS: u32 = 8;
-
-/// Edge of a tile in pixels: its estimates are made together, as rays from all over it end in the same places.
-const TILE: u32 = 64;
 
 struct Node {
     ray: Ray,
@@ -39,9 +36,17 @@ impl Node {
     }
 }
 
+/// What rays ask for where they land.
+struct Asked<'b> {
+    next: &'b mut Vec<Node>,
+    estimates: &'b mut Estimates,
+    /// Where estimates of many tiles are made together.
+    pooled: Option<&'b mut Pooled>,
+}
+
 /// Lists that tiles hand on to one another.
 #[derive(Default)]
-struct Buffers {
+pub(crate) struct Buffers {
     rays: Vec<Ray>,
     hits: Vec<Hit>,
     /// Numbers of the rays that partly transparent surfaces asked for some.
@@ -55,74 +60,64 @@ struct Buffers {
 }
 
 impl EyePass<'_> {
-    /// As [`EyePass::run`], by the thesis's recursion.
-    pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
-        self.tiles(TILE).run(film, observer, |buffers, index, tile, counters| {
-            self.direct_tile(maps, buffers, index, tile, counters, observer)
-        })
-    }
-
-    /// Returns how many samples it has made.
-    fn direct_tile(
+    /// Follows a sample of a tile.
+    pub fn direct_sample(
         &self,
         maps: &Maps,
         Buffers { rays, hits, draws, nodes, next, bsdf, estimates, scratch, found }: &mut Buffers,
-        index: u32,
-        tile: &mut Tile,
-        counters: &mut Counters,
-        observer: &dyn Observer,
-    ) -> u32 {
-        let mut tracer = self.tracer(index);
-        let mut twin = self.twin(Queries::Estimates, index);
-        scratch.begin_batch_of(&tracer);
+        sample: u32,
+        Started { tile, tracer, twin, counters, pooled, .. }: &mut Started,
+    ) {
         let place = tile.place;
-        for sample in 0..self.spp {
-            if observer.cancelled() {
-                return sample;
-            }
-            nodes.clear();
-            nodes.extend(self.camera_paths(sample, tile).map(|p| Node {
-                ray: p.ray,
-                throughput: p.throughput,
-                pixel: p.pixel,
-                level: 0,
-                number: 1,
-                width: p.width,
-                spread: p.spread,
-                record: NOT_YET,
-            }));
-            counters.rays.camera += nodes.len() as u64;
-            estimates.clear();
-            while !nodes.is_empty() {
-                rays.clear();
-                rays.extend(nodes.iter().map(|n| n.ray));
-                draws.clear();
-                draws.resize(if self.world.passes_light { nodes.len() } else { 0 }, None);
-                tracer.ask(nodes.iter().map(|n| (n.kind(), n.record)));
-                tracer.closest(rays, hits, counters, |i| {
-                    draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], place, sample)).next_1d()
-                });
-                nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
-                next.clear();
-                timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
-                    for (i, (node, hit)) in nodes.iter().zip(&*hits).enumerate() {
-                        let mut drawn = draws.get_mut(i).and_then(Option::take);
-                        let sampler = || drawn.take().unwrap_or_else(|| self.node_sampler(node, place, sample));
-                        self.branch(node, hit, sampler, bsdf, tile, next, estimates);
-                    }
-                });
-                counters.rays.specular += next.len() as u64;
-                std::mem::swap(nodes, next);
-            }
-            maps.global.sort(&mut estimates.list, maps.knn);
-            maps.global.estimate(&estimates.list, estimates, maps.knn, &mut twin, scratch, found, counters);
-            for (e, found) in estimates.list.iter().zip(&*found) {
+        scratch.begin_batch_of(tracer);
+        nodes.clear();
+        nodes.extend(self.camera_paths(sample, tile).map(|p| Node {
+            ray: p.ray,
+            throughput: p.throughput,
+            pixel: p.pixel,
+            level: 0,
+            number: 1,
+            width: p.width,
+            spread: p.spread,
+            record: NOT_YET,
+        }));
+        counters.rays.camera += nodes.len() as u64;
+        estimates.clear();
+        pooled.clear();
+        // Searches are recorded beside the rays that ask for them, tile by tile.
+        let pools = maps.knn.is_some() && !tracer.records();
+        while !nodes.is_empty() {
+            rays.clear();
+            rays.extend(nodes.iter().map(|n| n.ray));
+            draws.clear();
+            draws.resize(if self.world.passes_light { nodes.len() } else { 0 }, None);
+            tracer.ask(nodes.iter().map(|n| (n.kind(), n.record)));
+            tracer.closest(rays, hits, counters, |i| {
+                draws[i].get_or_insert_with(|| self.node_sampler(&nodes[i], place, sample)).next_1d()
+            });
+            nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
+            next.clear();
+            timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
+                let mut asked = Asked { next, estimates, pooled: pools.then_some(&mut *pooled) };
+                for (i, (node, hit)) in nodes.iter().zip(&*hits).enumerate() {
+                    let mut drawn = draws.get_mut(i).and_then(Option::take);
+                    let sampler = || drawn.take().unwrap_or_else(|| self.node_sampler(node, place, sample));
+                    self.branch(node, hit, maps.global.radius, sampler, bsdf, tile, &mut asked);
+                }
+            });
+            counters.rays.specular += next.len() as u64;
+            std::mem::swap(nodes, next);
+        }
+        pooled.locate(&maps.global);
+        maps.global.estimate(&estimates.list, estimates, maps.knn, twin, scratch, found, counters);
+        // Those that might be pooled come last, as where they are: the picture is the same to the last bit.
+        for last in [false, true] {
+            let made = estimates.list.iter().zip(&*found);
+            for (e, found) in made.filter(|(e, _)| matches!(e.scatter, Scatter::Constant(_)) == last) {
                 tile.estimated(e.path, found);
             }
-            scratch.hand_over(&mut tracer);
         }
-        tracer.finish();
-        self.spp
+        scratch.hand_over(tracer);
     }
 
     /// What a ray finds where it ends: light, an estimate to be made, and a reflected and a transmitted ray.
@@ -130,11 +125,11 @@ impl EyePass<'_> {
         &self,
         node: &Node,
         hit: &Hit,
+        radius: f32,
         mut sampler: impl FnMut() -> Sampler,
         bsdf: &mut Bsdf,
         tile: &mut Tile,
-        next: &mut Vec<Node>,
-        estimates: &mut Estimates,
+        Asked { next, estimates, pooled }: &mut Asked,
     ) {
         if !hit.is_hit() {
             let radiance = self.lights.environment_radiance(node.ray.dir);
@@ -157,25 +152,33 @@ impl EyePass<'_> {
         }
         if bsdf.has(LobeSet::GATHER) {
             let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
-            let scatter = estimates.scatter(bsdf);
-            estimates.list.push(Estimate {
-                query: GatherQuery {
-                    position: point.position,
-                    radius: 0.0,
-                    normal: point.geometric_normal * side,
-                    max_depth: 127,
-                },
-                side,
-                scatter,
-                throughput: node.throughput,
-                path: node.pixel,
-                places: 1,
-                shift: [0.0; 2],
-                ray: node.record,
-                offset: point.offset,
-                is_first: node.level == 0,
-                scale: 1.0,
-            });
+            let query = GatherQuery {
+                position: point.position,
+                radius: 0.0,
+                normal: point.geometric_normal * side,
+                max_depth: 127,
+            };
+            match (pooled, bsdf.constant(LobeSet::GATHER)) {
+                (Some(pooled), Some(factor)) => {
+                    pooled.push(GatherQuery { radius, ..query }, node.throughput * factor, node.pixel);
+                }
+                _ => {
+                    let scatter = estimates.scatter(bsdf);
+                    estimates.list.push(Estimate {
+                        query,
+                        side,
+                        scatter,
+                        throughput: node.throughput,
+                        path: node.pixel,
+                        places: 1,
+                        shift: [0.0; 2],
+                        ray: node.record,
+                        offset: point.offset,
+                        is_first: node.level == 0,
+                        scale: 1.0,
+                    })
+                }
+            }
         }
         if node.level + 1 >= self.max_depth || !bsdf.has(LobeSet::CONTINUE) {
             return;

@@ -23,6 +23,7 @@ mod memory;
 mod photon_pass;
 mod photon_window;
 mod pilot;
+mod pool;
 mod recording;
 mod renderer;
 mod runs;
@@ -36,6 +37,7 @@ mod tile;
 mod trace;
 mod twin;
 mod usefulness;
+mod waves;
 mod world;
 
 pub use camera::{CameraModel, CameraRay};

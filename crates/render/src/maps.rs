@@ -3,13 +3,13 @@
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::counters::{Counters, timed};
 use crate::recording::{search_record, sum};
-use crate::sort::sort_by_key;
 use crate::trace::Tracer;
 use crate::twin::Twin;
 use photinus_geometry::Vec3;
 use photinus_photons::{GatherQuery, Gathered, GatheredNearest, Kernel, Photon, Search};
 use photinus_profile::queries::{MapKind, SearchAnswer, SearchRecord};
 use photinus_profile::{SearchCounters, ticks, undisturbed};
+use std::ops::Range;
 
 /// One photon map with its gather radius.
 pub(crate) struct Map {
@@ -134,11 +134,24 @@ impl EstimateScratch {
 }
 
 impl Map {
-    /// Sorts estimates by their neighbourhoods where those are of use: for the nearest photons.
-    pub fn sort(&self, list: &mut [Estimate], knn: Option<u32>) {
-        if knn.is_some() {
-            sort_by_key(list, |e| self.search.neighbourhood(&e.query));
-        }
+    /// Sums the `k` nearest photons of each query; they come in the order of their neighbourhoods.
+    pub fn nearest(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        twin: &mut Twin,
+        out: &mut [GatheredNearest],
+        counters: &mut Counters,
+    ) {
+        in_runs(queries.len(), twin, counters, |run, counted, counters| {
+            let (queries, out) = (&queries[run.clone()], &mut out[run]);
+            if counted {
+                stamped(counters, |work| self.search.gather_nearest_counted(queries, k, self.kernel, out, work));
+            } else {
+                self.search.gather_nearest_ordered(queries, k, self.kernel, out);
+            }
+        });
+        counters.photons_found += out.iter().map(|found| u64::from(found.count)).sum::<u64>();
     }
 
     /// Makes the estimates `list` of the batch `estimates`; `out` gets one entry for each. The radius of a query is a lower bound for
@@ -156,27 +169,14 @@ impl Map {
         let bsdfs = &estimates.bsdfs;
         out.clear();
         out.resize(list.len(), Estimated::default());
-        counters.searches += list.len() as u64;
-        let mut nanoseconds = 0;
-        timed(twin.is_on(), &mut nanoseconds, || {
-            for (run, counted) in twin.runs(list.len()) {
-                let (estimates, out) = (&list[run.clone()], &mut out[run]);
-                if counted {
-                    let before = counters.sampled_estimates;
-                    let steady = undisturbed(|| {
-                        let begun = ticks();
-                        self.estimate_run::<true>(estimates, bsdfs, knn, scratch, out, counters);
-                        counters.sampled_estimates.total += ticks().wrapping_sub(begun);
-                    });
-                    if !steady {
-                        counters.sampled_estimates = before;
-                    }
-                } else {
-                    self.estimate_run::<false>(estimates, bsdfs, knn, scratch, out, counters);
-                }
+        in_runs(list.len(), twin, counters, |run, counted, counters| {
+            let (estimates, out) = (&list[run.clone()], &mut out[run]);
+            if counted {
+                self.estimate_run::<true>(estimates, bsdfs, knn, scratch, out, counters);
+            } else {
+                self.estimate_run::<false>(estimates, bsdfs, knn, scratch, out, counters);
             }
         });
-        counters.spent.estimates += nanoseconds;
     }
 
     /// The estimates of a run, counted and stamped where `COUNT` says so.
@@ -252,10 +252,7 @@ impl Map {
         nearest.clear();
         nearest.resize(queries.len(), GatheredNearest::default());
         if COUNT {
-            let count = |counted: &mut SearchCounters| {
-                self.search.gather_nearest_counted(queries, k, self.kernel, nearest, counted);
-            };
-            stamped(counters, count);
+            stamped(counters, |work| self.search.gather_nearest_counted(queries, k, self.kernel, nearest, work));
         } else {
             self.search.gather_nearest(queries, k, self.kernel, nearest);
         }
@@ -273,8 +270,13 @@ impl Map {
     /// Radiance by the sum of weighted flux within a radius.
     fn estimated(&self, e: &Estimate, flux: Vec3, count: u32, radius: f32) -> Estimated {
         let Scatter::Constant(factor) = e.scatter else { return Estimated::default() };
+        self.constant(e.throughput * factor, flux, count, radius)
+    }
+
+    /// The same, `factor` being throughput times scattering.
+    pub fn constant(&self, factor: Vec3, flux: Vec3, count: u32, radius: f32) -> Estimated {
         let irradiance = flux / self.kernel.area(radius.max(LEAST_RADIUS));
-        Estimated { radiance: e.throughput * factor * irradiance, density: density(count, radius), radius }
+        Estimated { radiance: factor * irradiance, density: density(count, radius), radius }
     }
 
     /// The map's radius, or the pixel's where that is wider, up to three times the map's so that far pixels do not
@@ -361,6 +363,36 @@ const LEAST_RADIUS: f32 = 1e-18;
 /// Photons per area.
 fn density(count: u32, radius: f32) -> f32 {
     count as f32 / (std::f32::consts::PI * radius * radius).max(1e-20)
+}
+
+/// Makes `count` estimates, run by run, as `work(run, counted, counters)` does: their time is taken, and what share of it the searches
+/// have where runs are counted.
+fn in_runs(
+    count: usize,
+    twin: &mut Twin,
+    counters: &mut Counters,
+    mut work: impl FnMut(Range<usize>, bool, &mut Counters),
+) {
+    counters.searches += count as u64;
+    let mut nanoseconds = 0;
+    timed(twin.is_on(), &mut nanoseconds, || {
+        for (run, counted) in twin.runs(count) {
+            if !counted {
+                work(run, false, counters);
+                continue;
+            }
+            let before = counters.sampled_estimates;
+            let steady = undisturbed(|| {
+                let begun = ticks();
+                work(run, true, counters);
+                counters.sampled_estimates.total += ticks().wrapping_sub(begun);
+            });
+            if !steady {
+                counters.sampled_estimates = before;
+            }
+        }
+    });
+    counters.spent.estimates += nanoseconds;
 }
 
 /// Runs a counted search between two stamps.

@@ -16,6 +16,7 @@ use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
 use crate::photon_window::PhotonWindow;
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
+use crate::waves::{ESTIMATES_A_PIXEL, WAVE_ESTIMATES};
 use crate::world::World;
 use photinus_num::StreamKind;
 use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError};
@@ -217,6 +218,10 @@ impl<'w> Renderer<'w> {
             stored: self.stored,
             maps_once: matches!(self.settings.mode, Mode::Gather | Mode::Direct),
             marks: self.cut_pixels.as_ref().map_or([0; 2], CutPixels::bytes).map(|bytes| bytes as u64),
+            estimates: match (self.settings.mode, self.settings.knn) {
+                (Mode::Direct, Some(_)) => WAVE_ESTIMATES.min(pixels * ESTIMATES_A_PIXEL),
+                _ => 0,
+            },
             lights: (self.lights.bytes() + self.caustics.as_ref().map_or(0, |plan| plan.guide.bytes())) as u64,
         })
     }

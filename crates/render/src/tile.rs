@@ -173,6 +173,14 @@ impl Tile<'_> {
         }
     }
 
+    /// What it made in so many samples; nothing without any.
+    pub fn made(mut self, counters: Counters, samples: u32) -> Option<Made> {
+        (samples > 0).then(|| {
+            self.finish(samples);
+            Made { pixels: self.shared.map_or(self.out, |shared| shared.sums), counters, samples }
+        })
+    }
+
     /// Means over the samples, and values of a pass that are no means; shared samples stay sums.
     fn finish(&mut self, samples: u32) {
         let channels = self.layout.channels();
@@ -217,14 +225,71 @@ pub(crate) struct Tiles<'a> {
 }
 
 /// What a tile made.
-struct Made {
+pub(crate) struct Made {
     /// Means of its pixels; where samples are shared, sums with their border.
     pixels: Vec<f32>,
     counters: Counters,
     samples: u32,
 }
 
-impl Tiles<'_> {
+/// Buffers that tasks hand on to one another.
+#[derive(Default)]
+pub(crate) struct Spare<B>(Mutex<Vec<B>>);
+
+impl<B: Default> Spare<B> {
+    /// None yet.
+    pub fn new() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+
+    /// Does work with buffers that no other thread has. What is in them must not matter.
+    pub fn with<T>(&self, work: impl FnOnce(&mut B) -> T) -> T {
+        let mut buffers = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+        let out = work(&mut buffers);
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(buffers);
+        out
+    }
+}
+
+impl<'a> Tiles<'a> {
+    /// Tiles along each axis.
+    fn across(&self) -> [u32; 2] {
+        let [_, _, width, height] = self.window;
+        [width, height].map(|size| size.div_ceil(self.edge))
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        let [across, down] = self.across();
+        across * down
+    }
+
+    /// Place in the window: x, y, width, height.
+    fn place(&self, index: u32) -> [u32; 4] {
+        let ([_, _, width, height], [across, _]) = (self.window, self.across());
+        let (x0, y0) = (index % across * self.edge, index / across * self.edge);
+        [x0, y0, self.edge.min(width - x0), self.edge.min(height - y0)]
+    }
+
+    /// An empty tile.
+    pub fn tile(&self, index: u32) -> Tile<'a> {
+        let [x0, y0, w, h] = self.place(index);
+        let pixels = (w * h) as usize;
+        let channels = self.layout.channels();
+        Tile {
+            out: vec![0.0; pixels * channels],
+            weights: vec![1.0; pixels],
+            place: [x0, y0, w, h],
+            sample: 0,
+            layout: self.layout,
+            shared: self.shared.map(|filter| Shared {
+                filter,
+                offsets: vec![[0.0; 2]; pixels],
+                sums: vec![0.0; ((w + 2 * filter.reach) * (h + 2 * filter.reach)) as usize * channels],
+            }),
+        }
+    }
+
     /// Renders all tiles by `render(buffers, index, tile, counters)`, which returns how many samples it has made, fewer than
     /// asked for only where it is stopped; puts them into `film`. What is in the buffers, which tiles hand on to one another,
     /// must not matter.
@@ -234,61 +299,42 @@ impl Tiles<'_> {
         observer: &dyn Observer,
         render: impl Fn(&mut B, u32, &mut Tile, &mut Counters) -> u32 + Sync,
     ) -> Result<Counters, Cancelled> {
-        let [_, _, width, height] = self.window;
-        let (across, down) = (width.div_ceil(self.edge), height.div_ceil(self.edge));
-        let tiles = across * down;
+        let tiles = self.count();
         let done = AtomicU64::new(0);
-        let place = |tile: u32| {
-            let (x0, y0) = (tile % across * self.edge, tile / across * self.edge);
-            (x0, y0, self.edge.min(width - x0), self.edge.min(height - y0))
-        };
-        let reach = self.shared.map_or(0, |filter| filter.reach);
-        let spare: Mutex<Vec<B>> = Mutex::new(Vec::new());
+        let spare = Spare::new();
         // One by one: of a run of tiles that a thread has begun no other can take any when it has none left.
-        let results: Vec<Option<Made>> = (0..tiles)
+        let made: Vec<Option<Made>> = (0..tiles)
             .into_par_iter()
             .with_max_len(1)
             .map(|index| {
                 if observer.cancelled() {
                     return None;
                 }
-                let (x0, y0, w, h) = place(index);
-                let pixels = (w * h) as usize;
-                let mut tile = Tile {
-                    out: vec![0.0; pixels * self.layout.channels()],
-                    weights: vec![1.0; pixels],
-                    place: [x0, y0, w, h],
-                    sample: 0,
-                    layout: self.layout,
-                    shared: self.shared.map(|filter| Shared {
-                        filter,
-                        offsets: vec![[0.0; 2]; pixels],
-                        sums: vec![0.0; ((w + 2 * reach) * (h + 2 * reach)) as usize * self.layout.channels()],
-                    }),
-                };
+                let mut tile = self.tile(index);
                 let mut counters = Counters::default();
-                let mut buffers = spare.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
-                let samples = render(&mut buffers, index, &mut tile, &mut counters);
-                spare.lock().unwrap_or_else(PoisonError::into_inner).push(buffers);
-                if samples == 0 {
-                    return None;
-                }
-                tile.finish(samples);
+                let samples = spare.with(|buffers| render(buffers, index, &mut tile, &mut counters));
+                let made = tile.made(counters, samples)?;
                 observer.progress(done.fetch_add(1, Ordering::Relaxed) + 1, u64::from(tiles));
-                Some(Made { pixels: tile.shared.map_or(tile.out, |shared| shared.sums), counters, samples })
+                Some(made)
             })
             .collect();
+        self.put_together(made, film)
+    }
+
+    /// Puts what the tiles made, in their order, into `film`; counters are those of all tiles.
+    pub fn put_together(&self, made: Vec<Option<Made>>, film: &mut [f32]) -> Result<Counters, Cancelled> {
+        let [_, _, width, _] = self.window;
         let mut counters = Counters::default();
         let channels = self.layout.channels();
         let mut complete = true;
-        for (index, result) in results.into_iter().enumerate() {
-            let Some(Made { pixels, counters: c, samples }) = result else {
+        for (index, made) in made.into_iter().enumerate() {
+            let Some(Made { pixels, counters: c, samples }) = made else {
                 complete = false;
                 continue;
             };
             complete &= samples == self.samples;
             counters += c;
-            let (x0, y0, w, h) = place(index as u32);
+            let [x0, y0, w, h] = self.place(index as u32);
             if let Some(filter) = self.shared {
                 self.add_sums(film, [x0, y0, w, h], &pixels, filter.reach);
                 continue;

@@ -13,6 +13,8 @@ pub(crate) enum Queries {
     PhotonRays,
     EyeRays,
     Estimates,
+    /// Estimates of many tiles that are made together.
+    Pooled,
 }
 
 /// Cuts the queries of a batch into runs with and without the twin. The windows of a batch lie a fixed distance apart,

@@ -21,6 +21,8 @@ pub enum Owner {
     Lights,
     /// Photons and what finds them.
     Photons,
+    /// Estimates of many tiles that are made together.
+    Estimates,
     /// Sums of the passes, and the picture while it is written.
     Film,
     /// The program, what its threads work on, and what loading left behind.
@@ -72,6 +74,7 @@ impl MemoryPrediction {
             (Owner::Textures, world.texture_bytes() as u64),
             (Owner::Lights, render.lights),
             (Owner::Photons, render.photons),
+            (Owner::Estimates, render.estimates),
             (Owner::Film, render.film),
             (Owner::Program, now.map_or(PROGRAM_BYTES, |n| n.now_bytes.saturating_sub(held)) + THREAD_BYTES * threads),
         ]);

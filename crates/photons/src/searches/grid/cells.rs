@@ -93,20 +93,23 @@ impl Cells {
     /// normals are nearest to, then by quarters of the fine cell.
     #[inline]
     pub(crate) fn neighbourhood(&self, position: Vec3, normal: Vec3) -> u64 {
-        // Casts take NaN and what is below zero to zero; neighbourhoods far outside the box are one.
-        let quarter = |u: f32| u64::from((u * 4.0) as u32).min((1 << NEIGHBOURHOOD_BITS) - 1);
-        let [x, y, z] = self.place(position).to_array().map(quarter);
-        let morton = |bits: fn(u64) -> u64| spread(bits(x)) | spread(bits(y)) << 1 | spread(bits(z)) << 2;
-        let size = normal.abs();
-        let axis = if size.x > size.y && size.x > size.z { 0 } else { 1 + usize::from(size.z >= size.y) };
-        let half_axis = 2 * axis as u64 + u64::from(normal[axis] < 0.0);
-        (morton(|u| u >> 2) << 3 | half_axis) << 6 | morton(|u| u & 3)
+        let [x, y, z] = self.quarters(position).map(spread);
+        let morton = x | y << 1 | z << 2;
+        (morton >> 6) << 9 | half_axis(normal) << 6 | morton & 63
     }
 
-    /// Whether two keys are of one fine cell and one half-axis.
+    /// The same numbers for queries of the same fine cell and half-axis only.
     #[inline]
-    pub(crate) fn same_neighbourhood(a: u64, b: u64) -> bool {
-        (a ^ b) >> 6 == 0
+    pub(crate) fn fine_cell(&self, position: Vec3, normal: Vec3) -> u64 {
+        let [x, y, z] = self.quarters(position).map(|u| u >> 2);
+        (x | y << NEIGHBOURHOOD_BITS | z << (2 * NEIGHBOURHOOD_BITS)) << 3 | half_axis(normal)
+    }
+
+    /// Where a point lies in quarters of fine cells; points far outside the box are in the same place.
+    #[inline]
+    fn quarters(&self, position: Vec3) -> [u64; 3] {
+        // Casts take NaN and what is below zero to zero.
+        self.place(position).to_array().map(|u| u64::from((u * 4.0) as u32).min((1 << NEIGHBOURHOOD_BITS) - 1))
     }
 
     /// Index of the cell of a key.
@@ -176,6 +179,18 @@ impl Cells {
         let to_box = (position - position.clamp(self.min, self.max)).length();
         (cells * FINE / self.inv_edge + to_box).max(f32::MIN_POSITIVE)
     }
+}
+
+/// The half-axis that a normal is nearest to: twice the axis, one more below.
+#[inline]
+fn half_axis(normal: Vec3) -> u64 {
+    let size = normal.abs();
+    // Without branches: normals of neighbouring queries may differ.
+    let is_x = (size.x > size.y) & (size.x > size.z);
+    let is_z = !is_x & (size.z >= size.y);
+    let axis = u64::from(!is_x) + u64::from(is_z);
+    let below = u64::from(normal.cmplt(Vec3::ZERO).bitmask());
+    2 * axis + (below >> axis & 1)
 }
 
 /// What [`Cells::reached`] found.

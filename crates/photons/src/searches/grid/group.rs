@@ -1,7 +1,6 @@
 //! Searches for the nearest, neighbours together: queries that lie close to one another look the photons around them up once.
 
 use super::Grid;
-use super::cells::Cells;
 use super::kernels::SharedKernels;
 use super::narrow::{ATTEMPTS, NearestFinder, WIDER, wider_for};
 use super::shared::Share;
@@ -27,7 +26,7 @@ const SLACK: f32 = 1e-5;
 const MOST_SHARED: u64 = 1 << 16;
 
 impl Grid {
-    /// Sums the nearest of each query of a batch; returns the photons tested.
+    /// Sums the nearest of each query of a batch in any order; returns the photons tested.
     pub(super) fn gather_nearest_batch(
         &self,
         queries: &[GatherQuery],
@@ -41,43 +40,65 @@ impl Grid {
             .map(|(i, query)| (self.cells.neighbourhood(query.position, query.normal), i))
             .collect();
         order.sort_unstable();
-        let answer = |part: &[(u64, u32)]| {
-            let mut group =
-                Group { grid: self, k, finder: NearestFinder::new(), answers: Vec::with_capacity(part.len()) };
-            let same = |a: &(u64, u32), b: &(u64, u32)| {
-                Cells::same_neighbourhood(a.0, b.0)
-                    && queries[a.1 as usize].max_depth == queries[b.1 as usize].max_depth
-            };
-            let mut members = Vec::new();
-            for part in part.chunk_by(same) {
-                members.clear();
-                for (i, query) in part.iter().map(|(_, i)| (*i, &queries[*i as usize])) {
-                    let member = Member { index: i, radius: query.radius, query: PreparedQuery::new(query, kernel) };
-                    // A question that makes no sense has no neighbours.
-                    if member.query.r2 >= 0.0 { members.push(member) } else { group.alone(&member) }
-                }
-                group.answer(&members);
-            }
-            (group.answers, group.finder.tested)
-        };
-        let mut tested = 0;
-        let parts: Vec<_> = match parallel {
-            true => order.par_chunks(QUERIES_A_TASK).map(answer).collect(),
-            false => vec![answer(&order)],
-        };
-        for (answers, tested_here) in parts {
-            answers.into_iter().for_each(|(i, answer)| out[i as usize] = answer);
-            tested += tested_here;
-        }
+        let ordered: Vec<GatherQuery> = order.iter().map(|(_, i)| queries[*i as usize]).collect();
+        let mut answers = vec![GatheredNearest::default(); queries.len()];
+        let tested = self.gather_nearest_ordered(&ordered, k, kernel, parallel, &mut answers);
+        order.iter().zip(answers).for_each(|((_, i), answer)| out[*i as usize] = answer);
         tested
+    }
+
+    /// The same for queries in the order of their neighbourhoods.
+    pub(super) fn gather_nearest_ordered(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        kernel: Kernel,
+        parallel: bool,
+        out: &mut [GatheredNearest],
+    ) -> u64 {
+        let answer = |(queries, out): (&[GatherQuery], &mut [GatheredNearest])| {
+            self.gather_nearest_part(queries, k, kernel, out)
+        };
+        if parallel && queries.len() > QUERIES_A_TASK {
+            queries.par_chunks(QUERIES_A_TASK).zip(out.par_chunks_mut(QUERIES_A_TASK)).map(answer).sum()
+        } else {
+            queries.chunks(QUERIES_A_TASK).zip(out.chunks_mut(QUERIES_A_TASK)).map(answer).sum()
+        }
+    }
+
+    fn gather_nearest_part(
+        &self,
+        queries: &[GatherQuery],
+        k: u32,
+        kernel: Kernel,
+        mut out: &mut [GatheredNearest],
+    ) -> u64 {
+        let mut group = Group { grid: self, k, finder: NearestFinder::new() };
+        let same = |a: &GatherQuery, b: &GatherQuery| {
+            self.cells.fine_cell(a.position, a.normal) == self.cells.fine_cell(b.position, b.normal)
+                && a.max_depth == b.max_depth
+        };
+        let mut members = Vec::new();
+        for part in queries.chunk_by(same) {
+            let (answers, rest) = out.split_at_mut(part.len());
+            out = rest;
+            members.clear();
+            members.extend(part.iter().map(|q| Member { radius: q.radius, query: PreparedQuery::new(q, kernel) }));
+            // Questions that make no sense have no neighbours.
+            let sense = |member: &Member| member.query.r2 >= 0.0;
+            if members.iter().all(sense) {
+                group.answer(&members, answers);
+            } else {
+                members.iter().zip(answers).for_each(|(member, answer)| *answer = group.alone(member));
+            }
+        }
+        group.finder.tested
     }
 }
 
 /// A query of a group.
 #[derive(Clone, Copy)]
 struct Member {
-    /// Its place in the batch.
-    index: u32,
     radius: f32,
     query: PreparedQuery,
 }
@@ -87,12 +108,11 @@ struct Group<'a> {
     grid: &'a Grid,
     k: u32,
     finder: NearestFinder,
-    answers: Vec<(u32, GatheredNearest)>,
 }
 
 impl Group<'_> {
     /// Answers members that are neighbours, in pieces no longer than a search reaches.
-    fn answer(&mut self, mut members: &[Member]) {
+    fn answer(&mut self, mut members: &[Member], mut out: &mut [GatheredNearest]) {
         while !members.is_empty() {
             let longest = LONGEST * self.finder.last_radius;
             let mut bounds = Aabb::EMPTY;
@@ -102,21 +122,21 @@ impl Group<'_> {
             };
             let count = members.iter().take_while(fits).count().max(1);
             let (piece, rest) = members.split_at(count);
+            let (answers, rest_out) = out.split_at_mut(count);
             if piece.len() < FEW {
-                piece.iter().for_each(|member| self.alone(member));
+                piece.iter().zip(answers).for_each(|(member, answer)| *answer = self.alone(member));
             } else {
-                self.together(piece);
+                self.together(piece, answers);
             }
-            members = rest;
+            (members, out) = (rest, rest_out);
         }
     }
 
-    fn alone(&mut self, member: &Member) {
-        let answer = self.grid.nearest_alone(member.query, member.radius, self.k, &mut self.finder);
-        self.answers.push((member.index, answer));
+    fn alone(&mut self, member: &Member) -> GatheredNearest {
+        self.grid.nearest_alone(member.query, member.radius, self.k, &mut self.finder)
     }
 
-    fn together(&mut self, members: &[Member]) {
+    fn together(&mut self, members: &[Member], mut out: &mut [GatheredNearest]) {
         let bounds = Aabb::around(members.iter().map(|member| member.query.position));
         let centre = (bounds.min + bounds.max) * 0.5;
         // The middle may be rounded by as much as members lie apart: half of the box's diagonal may fall short.
@@ -129,11 +149,11 @@ impl Group<'_> {
             if left.is_empty() || !self.share(&ball, reach, members) {
                 break;
             }
-            let (answered, found) = self.answer_shared(&ball, left);
-            left = &left[answered..];
+            let (answered, found) = self.answer_shared(&ball, left, out);
+            (left, out) = (&left[answered..], &mut out[answered..]);
             reach = (reach * wider_for(self.k, found)).min(most);
         }
-        left.iter().for_each(|member| self.alone(member));
+        left.iter().zip(out).for_each(|(member, answer)| *answer = self.alone(member));
     }
 
     /// Collects the photons within a distance of all members; not where that is too small or too large to reckon with, nor
@@ -161,11 +181,11 @@ impl Group<'_> {
 
     /// Answers members by the photons shared, up to the first whose nearest are not all among them; returns how many, and how
     /// many photons that one found.
-    fn answer_shared(&mut self, ball: &Ball, members: &[Member]) -> (usize, u32) {
+    fn answer_shared(&mut self, ball: &Ball, members: &[Member], out: &mut [GatheredNearest]) -> (usize, u32) {
         let SharedKernels { nearest, gather, .. } = self.grid.kernels.shared;
         let finder = &mut self.finder;
         let photons = finder.shared.photons();
-        for (i, member) in members.iter().enumerate() {
+        for (i, (member, answer)) in members.iter().zip(out).enumerate() {
             let mut query = member.query;
             let whole = query.r2;
             let reach = ball.reach_from(query.position, finder.shared_extent);
@@ -185,8 +205,7 @@ impl Group<'_> {
             query.r2 = if has_all { found.limit_sq } else { whole };
             query.kernel = PreparedKernel::new(query.kernel.kernel, radius);
             let sums = gather(&finder.shared, &query);
-            let answer = GatheredNearest { flux: sums.flux, count: sums.count, farthest_sq: found.limit_sq };
-            self.answers.push((member.index, answer));
+            *answer = GatheredNearest { flux: sums.flux, count: sums.count, farthest_sq: found.limit_sq };
         }
         (members.len(), self.k)
     }

@@ -145,6 +145,11 @@ impl Search for Grid {
         self.gather_nearest_batch(queries, k, kernel, true, out);
     }
 
+    fn gather_nearest_ordered(&self, queries: &[GatherQuery], k: u32, kernel: Kernel, out: &mut [GatheredNearest]) {
+        assert_eq!(queries.len(), out.len(), "one result a query");
+        Grid::gather_nearest_ordered(self, queries, k, kernel, true, out);
+    }
+
     fn gather_nearest_counted(
         &self,
         queries: &[GatherQuery],

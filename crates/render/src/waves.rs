@@ -1,0 +1,226 @@
+//! The order of a direct render: tiles are followed in waves, and the estimates of a wave are made together, while the next one is
+//! followed.
+
+use crate::control::{Cancelled, Observer};
+use crate::counters::Counters;
+use crate::direct::Buffers;
+use crate::eye_pass::EyePass;
+use crate::maps::Maps;
+use crate::pool::{Pool, Pooled};
+use crate::tile::{Made, Spare, Tile, Tiles};
+use crate::trace::Tracer;
+use crate::twin::{Queries, Twin};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Edge of a tile in pixels.
+const TILE: u32 = 64;
+/// Tiles of the first wave; each later one has as many at most as all before it.
+const FIRST_WAVE: u32 = 16;
+/// Estimates of a wave, about: many enough that most lie close to others, few enough for the memory that they take.
+pub(crate) const WAVE_ESTIMATES: u64 = 1 << 18;
+/// Estimates of a pixel, roughly, where mirrors are about.
+pub(crate) const ESTIMATES_A_PIXEL: u64 = 4;
+
+/// Cuts the tiles into waves, as long as those before say: they do not depend on the machine.
+struct Waves {
+    tiles: u32,
+    next: u32,
+    /// Estimates of a sample of the tiles before `next`.
+    asked: u64,
+}
+
+impl Waves {
+    fn next(&mut self) -> Option<Range<u32>> {
+        let left = self.tiles - self.next;
+        if left == 0 {
+            return None;
+        }
+        let mean = self.asked.checked_div(u64::from(self.next)).unwrap_or(0).max(u64::from(TILE * TILE));
+        let fit = ((WAVE_ESTIMATES / mean) as u32).clamp(1, self.next.max(FIRST_WAVE));
+        // Those left in waves of one length.
+        let count = left.div_ceil(left.div_ceil(fit));
+        let wave = self.next..self.next + count;
+        self.next = wave.end;
+        Some(wave)
+    }
+}
+
+/// A tile under way.
+pub(crate) struct Started<'a> {
+    pub tile: Tile<'a>,
+    pub tracer: Tracer<'a>,
+    /// Of the estimates that are not pooled.
+    pub twin: Twin,
+    pub counters: Counters,
+    /// The estimates of the present sample that are made together with those of other tiles.
+    pub pooled: Pooled,
+    /// The pixels before the present sample.
+    before: Vec<f32>,
+}
+
+/// Tiles whose estimates are made together.
+struct Wave<'a> {
+    tiles: Vec<Started<'a>>,
+    /// Samples that are whole.
+    samples: u32,
+    next: Next,
+}
+
+/// How far the next sample of a wave is.
+#[derive(Default)]
+enum Next {
+    #[default]
+    NotBegun,
+    /// Stopped in some tile.
+    Cut,
+    /// All of it is there but its estimates.
+    Followed,
+}
+
+/// What all waves share.
+struct Shared<'a> {
+    maps: &'a Maps,
+    observer: &'a dyn Observer,
+    spare: Spare<Buffers>,
+}
+
+/// What makes estimates, and what it took.
+#[derive(Default)]
+struct Maker {
+    pool: Pool,
+    tasks: u32,
+    counters: Counters,
+}
+
+impl EyePass<'_> {
+    /// As [`EyePass::run`], by the thesis's recursion.
+    pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
+        let tiles = self.tiles(TILE);
+        let shared = Shared { maps, observer, spare: Spare::new() };
+        let mut waves = Waves { tiles: tiles.count(), next: 0, asked: 0 };
+        let (mut made, mut maker) = (Vec::new(), Maker::default());
+        // Lists that waves hand on to one another.
+        let mut lists = Vec::new();
+        // The wave that has been followed, but for its last estimates.
+        let mut behind: Option<Wave> = None;
+        while let Some(range) = waves.next() {
+            let mut wave = self.start(range, &tiles, &mut lists);
+            let estimates = || {
+                behind.take().map(|mut wave| {
+                    self.make(&mut wave, &shared, &mut maker);
+                    wave
+                })
+            };
+            let (done, ()) = rayon::join(estimates, || self.follow_wave(&mut wave, &shared));
+            if let Some(done) = done {
+                done.finish(&mut made, &mut lists);
+                observer.progress(made.len() as u64, u64::from(tiles.count()));
+            }
+            waves.asked += wave.tiles.iter().map(|tile| tile.pooled.queries.len() as u64).sum::<u64>();
+            while wave.samples + 1 < self.spp && self.make(&mut wave, &shared, &mut maker) {
+                self.follow_wave(&mut wave, &shared);
+            }
+            behind = Some(wave);
+        }
+        if let Some(mut wave) = behind {
+            self.make(&mut wave, &shared, &mut maker);
+            wave.finish(&mut made, &mut lists);
+        }
+        let counters = tiles.put_together(made, film)?;
+        maker.counters += counters;
+        Ok(maker.counters)
+    }
+
+    fn start<'t>(&'t self, range: Range<u32>, tiles: &Tiles<'t>, lists: &mut Vec<Pooled>) -> Wave<'t> {
+        let start = |index| Started {
+            tile: tiles.tile(index),
+            tracer: self.tracer(index),
+            twin: self.twin(Queries::Estimates, index),
+            counters: Counters::default(),
+            pooled: lists.pop().unwrap_or_default(),
+            before: Vec::new(),
+        };
+        Wave { tiles: range.map(start).collect(), samples: 0, next: Next::NotBegun }
+    }
+
+    /// Follows the next sample of all tiles of a wave.
+    fn follow_wave(&self, wave: &mut Wave, Shared { maps, observer, spare }: &Shared) {
+        let sample = wave.samples;
+        // One by one: of a run of tiles that a thread has begun no other can take any when it has none left.
+        wave.tiles.par_iter_mut().with_max_len(1).for_each(|started| {
+            if sample > 0 {
+                started.before.clone_from(&started.tile.out);
+            }
+            if !observer.cancelled() {
+                spare.with(|buffers| self.direct_sample(maps, buffers, sample, started));
+            }
+        });
+        wave.next = if observer.cancelled() { Next::Cut } else { Next::Followed };
+    }
+
+    /// Makes the estimates of a wave's next sample; false where that has not been followed or is stopped: it is then forgotten.
+    fn make(&self, wave: &mut Wave, shared: &Shared, maker: &mut Maker) -> bool {
+        let whole = match std::mem::take(&mut wave.next) {
+            Next::NotBegun => return false,
+            Next::Cut => false,
+            Next::Followed => self.make_pooled(wave, shared, maker),
+        };
+        if whole {
+            wave.samples += 1;
+        } else {
+            wave.tiles.iter_mut().for_each(|s| std::mem::swap(&mut s.tile.out, &mut s.before));
+        }
+        whole
+    }
+
+    fn make_pooled(&self, wave: &mut Wave, Shared { maps, observer, .. }: &Shared, maker: &mut Maker) -> bool {
+        // Where not the nearest are asked for, tiles have made their own.
+        let Some(k) = maps.knn else { return true };
+        let Maker { pool, tasks, counters } = maker;
+        let lists: Vec<&Pooled> = wave.tiles.iter().map(|started| &started.pooled).collect();
+        let twin = |task: u32| self.twin(Queries::Pooled, *tasks + task);
+        let Some(done) = pool.answer(&maps.global, k, &lists, twin, counters, *observer) else { return false };
+        *tasks += done;
+        wave.tiles.par_iter_mut().enumerate().for_each(|(number, Started { tile, pooled, .. })| {
+            for (pixel, found) in pool.found(&maps.global, k, number, pooled) {
+                tile.estimated(pixel, &found);
+            }
+        });
+        true
+    }
+}
+
+impl Wave<'_> {
+    /// Ends its tiles, and hands on their lists.
+    fn finish(self, made: &mut Vec<Option<Made>>, lists: &mut Vec<Pooled>) {
+        for started in self.tiles {
+            started.tracer.finish();
+            lists.push(started.pooled);
+            made.push(started.tile.made(started.counters, self.samples));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn waves_cover_all_tiles_and_stay_small() {
+        for tiles in [1, 15, 16, 17, 117, 5000] {
+            for asked_a_tile in [0, 4096, 20_000, 1 << 18, 1 << 20] {
+                let mut waves = Waves { tiles, next: 0, asked: 0 };
+                let mut end = 0;
+                while let Some(wave) = waves.next() {
+                    assert_eq!(wave.start, end, "{tiles} tiles of {asked_a_tile}");
+                    assert!(wave.len() as u32 <= end.max(FIRST_WAVE));
+                    assert!(end == 0 || wave.len() == 1 || wave.len() as u64 * asked_a_tile <= WAVE_ESTIMATES);
+                    end = wave.end;
+                    waves.asked += wave.len() as u64 * asked_a_tile;
+                }
+                assert_eq!(end, tiles);
+            }
+        }
+    }
+}
