@@ -176,6 +176,7 @@ impl EyePass<'_> {
                         offset: point.offset,
                         is_first: node.level == 0,
                         scale: 1.0,
+                        caustic_scale: 1.0,
                     })
                 }
             }

@@ -370,6 +370,7 @@ impl EyePass<'_> {
             offset,
             is_first,
             scale: 1.0,
+            caustic_scale: 1.0,
         };
         if is_first {
             self.add_companions(path, tile, &mut estimate, &mut estimates.companions);

@@ -51,6 +51,8 @@ pub(crate) struct Estimate {
     pub is_first: bool,
     /// Part of the radius of the map of all light that it is made over, 0 to 1.
     pub scale: f32,
+    /// The same of the caustic map.
+    pub caustic_scale: f32,
 }
 
 /// How the light of photons is scattered to where an estimate is asked for.
@@ -279,11 +281,15 @@ impl Map {
         Estimated { radiance: factor * irradiance, density: density(count, radius), radius }
     }
 
-    /// The map's radius, or the pixel's where that is wider, up to three times the map's so that far pixels do not
+    /// The map's radius, or the pixel's where that is wider (of each of its places, where there are several), up to three times the map's so that far pixels do not
     /// gather everything.
     fn radius_for(&self, e: &Estimate) -> f32 {
-        let scale = if self.kind == MapKind::Global { e.scale } else { 1.0 };
-        (self.radius * scale).max(e.query.radius.min(3.0 * self.radius))
+        let (part, own) = match self.kind {
+            MapKind::Global => (e.scale, e.query.radius),
+            // Places spread over the pixel need not reach as far as one.
+            MapKind::Caustic => (e.caustic_scale, e.query.radius / (e.places as f32).sqrt()),
+        };
+        (self.radius * part).max(own.min(3.0 * self.radius))
     }
 
     /// Scattering that depends on where the photons come from: each photon by itself. The twin finds all of them first,
