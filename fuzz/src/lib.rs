@@ -14,6 +14,13 @@ static ALLOCATOR: cap::Cap<System> = cap::Cap::new(System, MAX_BYTES);
 /// Called once before the fuzzing of the target `name`. Where the variable `PHOTINUS_FUZZ_SEEDS` names a folder, the
 /// seeds and the dictionary are written there instead, as `seeds/NUMBER` and `words`.
 pub fn prepare(name: &str) {
+    // The fuzzer takes every panic for a finding; those of decoders are errors like others.
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !photinus::image::is_decoding() {
+            hook(panic);
+        }
+    }));
     let Some(folder) = std::env::var_os("PHOTINUS_FUZZ_SEEDS").map(PathBuf::from) else { return };
     let target = target(name);
     std::fs::create_dir_all(folder.join("seeds")).expect("the folder for seeds can be made");

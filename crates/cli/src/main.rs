@@ -17,6 +17,7 @@ use std::time::Instant;
 fn main() -> ExitCode {
     let begun = Instant::now();
     allocator::prepare();
+    quiet_decoders();
     let outcome = match Cli::parse().command {
         Command::Render(args) => commands::render::run(&args, begun),
         Command::Info(args) => commands::info::run(&args),
@@ -32,6 +33,16 @@ fn main() -> ExitCode {
         Err(Failure::Input(message)) => fail(&message, 1),
         Err(Failure::Usage(message)) => fail(&message, 2),
     }
+}
+
+/// What makes a decoder give up is in the error that follows; its own message would be two lines for somebody else.
+fn quiet_decoders() {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !photinus::image::is_decoding() {
+            hook(panic);
+        }
+    }));
 }
 
 fn fail(message: &str, code: u8) -> ExitCode {

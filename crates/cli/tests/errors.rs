@@ -136,6 +136,14 @@ fn messages_stay_on_one_line_whatever_a_name_holds() {
     assert!(!said.contains('\u{1b}'), "{said:?}");
 }
 
+/// A decoder that panics on a damaged file: one line, without the panic's own.
+#[test]
+fn a_decoder_that_gives_up_is_one_line() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/found/jpeg/rows-that-do-not-fit-their-scratch.jpg");
+    let message = refused(&run(&["compare", file, file]), 1);
+    assert!(message.contains("its decoder gave up"), "{message}");
+}
+
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
     let folder = tempfile::tempdir().unwrap();

@@ -20,7 +20,8 @@ pub use error::{ImageError, ImageErrorKind, Result};
 pub use image::{Channel, Image, Layer, Layers};
 pub use limits::Limits;
 pub use read::{
-    DecodedImage, Texels, decode, decode_bytes, image_from_bytes, layers_from_bytes, read_image, read_layers,
+    DecodedImage, Texels, decode, decode_bytes, image_from_bytes, is_decoding, layers_from_bytes, read_image,
+    read_layers,
 };
 pub use write::{
     encode_exr, encode_png, remove_abandoned, temporary_in, write_atomic, write_exr, write_png, write_png8,

@@ -12,6 +12,7 @@ use crate::error::{ImageError, ImageErrorKind, Result};
 use crate::image::{Image, Layers};
 use crate::limits::Limits;
 use format::Format;
+use std::cell::Cell;
 use std::io::Read;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -102,8 +103,20 @@ fn read_bytes(path: &Path, limits: Limits) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+thread_local! {
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread is inside of a third-party decoder, where a panic is an error like any other: programs may have their panic hook
+/// say nothing then.
+pub fn is_decoding() -> bool {
+    GUARDED.get()
+}
+
 /// Runs a third-party decoder; a panic inside it (on a file that breaks an assumption of its own) is an error like any other.
 fn guarded<T>(path: &Path, decoder: impl FnOnce() -> Result<T>) -> Result<T> {
-    catch_unwind(AssertUnwindSafe(decoder))
-        .unwrap_or_else(|_| Err(ImageError::malformed(path, "the file is damaged (its decoder gave up)")))
+    let outer = GUARDED.replace(true);
+    let decoded = catch_unwind(AssertUnwindSafe(decoder));
+    GUARDED.set(outer);
+    decoded.unwrap_or_else(|_| Err(ImageError::malformed(path, "the file is damaged (its decoder gave up)")))
 }
