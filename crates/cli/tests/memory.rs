@@ -28,6 +28,7 @@ fn memory_is_predicted_within_a_fifth() {
         "furnace --mode path --time 1 --size 800x800",
         "cornell --mode gather --photons 500000 --passes 2 --size 200x200",
         "cornell --mode direct --photons 300000 --passes 1 --size 64x64",
+        "room-1 --mode direct --photons 50000 --radius 20 --knn 100 --surface-model fixed --passes 1 --size 800x600",
     ] {
         let (predicted, peak) = predicted_and_peak(arguments);
         assert!((predicted / peak - 1.0).abs() < 0.2, "{arguments}: predicted {predicted}, peak {peak}");

@@ -2,13 +2,15 @@
 //! children both followed to a level limit, no shadow rays (Figure 3: FireViewerRay, CalculateRayColour).
 
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
-use crate::counters::timed;
+use crate::control::{Cancelled, Observer};
+use crate::counters::{Counters, timed};
 use crate::eye_pass::EyePass;
 use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps, Scatter};
 use crate::pool::Pooled;
 use crate::recording::NOT_YET;
 use crate::tile::Tile;
-use crate::waves::Started;
+use crate::trace::Tracer;
+use crate::twin::{Queries, Twin};
 use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
@@ -16,6 +18,9 @@ use photinus_profile::queries::RayKind;
 
 /// Levels followed where neither the scene nor the user limits them: 2^8 rays a pixel at the very most.
 pub(crate) const DEFAULT_LEVELS: u32 = 8;
+
+/// Edge of a tile in pixels: rays from all over it end in the same places.
+pub(crate) const TILE: u32 = 64;
 
 struct Node {
     ray: Ray,
@@ -59,14 +64,50 @@ pub(crate) struct Buffers {
     found: Vec<Estimated>,
 }
 
+/// A tile whose samples are followed.
+pub(crate) struct Followed<'f, 't, 'w> {
+    pub tile: &'f mut Tile<'t>,
+    pub tracer: &'f mut Tracer<'w>,
+    /// Of the estimates that the tile makes itself.
+    pub twin: &'f mut Twin,
+    pub counters: &'f mut Counters,
+    /// Where the estimates are made together with those of other tiles.
+    pub pooled: Option<&'f mut Pooled>,
+}
+
 impl EyePass<'_> {
+    /// As [`EyePass::run`], by the thesis's recursion.
+    pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
+        match maps.knn {
+            // Searches are recorded beside the rays that ask for them, tile by tile.
+            Some(k) if self.world.recorder.is_none() => self.run_waves(maps, k, film, observer),
+            _ => self.run_alone(maps, film, observer),
+        }
+    }
+
+    /// Each tile makes its own estimates. The picture is the same to the last bit.
+    fn run_alone(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
+        self.tiles(TILE).run(film, observer, |buffers, index, tile, counters| {
+            let (mut tracer, mut twin) = (self.tracer(index), self.twin(Queries::Estimates, index));
+            for sample in 0..self.spp {
+                if observer.cancelled() {
+                    return sample;
+                }
+                let (tracer, twin) = (&mut tracer, &mut twin);
+                self.direct_sample(maps, buffers, sample, Followed { tile, tracer, twin, counters, pooled: None });
+            }
+            tracer.finish();
+            self.spp
+        })
+    }
+
     /// Follows a sample of a tile.
     pub fn direct_sample(
         &self,
         maps: &Maps,
         Buffers { rays, hits, draws, nodes, next, bsdf, estimates, scratch, found }: &mut Buffers,
         sample: u32,
-        Started { tile, tracer, twin, counters, pooled, .. }: &mut Started,
+        Followed { tile, tracer, twin, counters, mut pooled }: Followed,
     ) {
         let place = tile.place;
         scratch.begin_batch_of(tracer);
@@ -83,9 +124,9 @@ impl EyePass<'_> {
         }));
         counters.rays.camera += nodes.len() as u64;
         estimates.clear();
-        pooled.clear();
-        // Searches are recorded beside the rays that ask for them, tile by tile.
-        let pools = maps.knn.is_some() && !tracer.records();
+        if let Some(pooled) = &mut pooled {
+            pooled.clear();
+        }
         while !nodes.is_empty() {
             rays.clear();
             rays.extend(nodes.iter().map(|n| n.ray));
@@ -98,7 +139,7 @@ impl EyePass<'_> {
             nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
             next.clear();
             timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
-                let mut asked = Asked { next, estimates, pooled: pools.then_some(&mut *pooled) };
+                let mut asked = Asked { next, estimates, pooled: pooled.as_deref_mut() };
                 for (i, (node, hit)) in nodes.iter().zip(&*hits).enumerate() {
                     let mut drawn = draws.get_mut(i).and_then(Option::take);
                     let sampler = || drawn.take().unwrap_or_else(|| self.node_sampler(node, place, sample));
@@ -108,7 +149,9 @@ impl EyePass<'_> {
             counters.rays.specular += next.len() as u64;
             std::mem::swap(nodes, next);
         }
-        pooled.locate(&maps.global);
+        if let Some(pooled) = pooled {
+            pooled.locate(&maps.global);
+        }
         maps.global.estimate(&estimates.list, estimates, maps.knn, twin, scratch, found, counters);
         // Those that might be pooled come last, as where they are: the picture is the same to the last bit.
         for last in [false, true] {

@@ -310,7 +310,8 @@ impl<'w> Renderer<'w> {
                 if let Some(pixels) = &mut self.cut_pixels {
                     pixels.forget();
                 }
-                if self.film.passes() == 0 {
+                // A picture of nothing is none.
+                if self.film.passes() == 0 && buffer.iter().any(|value| *value != 0.0) {
                     self.partial = Some(buffer);
                 }
                 Err(cancelled.into())

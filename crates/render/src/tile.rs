@@ -237,11 +237,6 @@ pub(crate) struct Made {
 pub(crate) struct Spare<B>(Mutex<Vec<B>>);
 
 impl<B: Default> Spare<B> {
-    /// None yet.
-    pub fn new() -> Self {
-        Self(Mutex::new(Vec::new()))
-    }
-
     /// Does work with buffers that no other thread has. What is in them must not matter.
     pub fn with<T>(&self, work: impl FnOnce(&mut B) -> T) -> T {
         let mut buffers = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
@@ -301,7 +296,7 @@ impl<'a> Tiles<'a> {
     ) -> Result<Counters, Cancelled> {
         let tiles = self.count();
         let done = AtomicU64::new(0);
-        let spare = Spare::new();
+        let spare = Spare::default();
         // One by one: of a run of tiles that a thread has begun no other can take any when it has none left.
         let made: Vec<Option<Made>> = (0..tiles)
             .into_par_iter()
@@ -321,12 +316,12 @@ impl<'a> Tiles<'a> {
         self.put_together(made, film)
     }
 
-    /// Puts what the tiles made, in their order, into `film`; counters are those of all tiles.
+    /// Puts what the tiles made, in their order and as far as there are any, into `film`; counters are those of all tiles.
     pub fn put_together(&self, made: Vec<Option<Made>>, film: &mut [f32]) -> Result<Counters, Cancelled> {
         let [_, _, width, _] = self.window;
         let mut counters = Counters::default();
         let channels = self.layout.channels();
-        let mut complete = true;
+        let mut complete = made.len() as u32 == self.count();
         for (index, made) in made.into_iter().enumerate() {
             let Some(Made { pixels, counters: c, samples }) = made else {
                 complete = false;

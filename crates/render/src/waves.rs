@@ -3,7 +3,7 @@
 
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
-use crate::direct::Buffers;
+use crate::direct::{Buffers, Followed, TILE};
 use crate::eye_pass::EyePass;
 use crate::maps::Maps;
 use crate::pool::{Pool, Pooled};
@@ -12,12 +12,12 @@ use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Edge of a tile in pixels.
-const TILE: u32 = 64;
-/// Tiles of the first wave; each later one has as many at most as all before it.
-const FIRST_WAVE: u32 = 16;
-/// Estimates of a wave, about: many enough that most lie close to others, few enough for the memory that they take.
+/// Least tiles of a wave, so that many threads have some; each has as many more at most as all before it.
+const LEAST_WAVE: u32 = 16;
+/// Estimates of a wave, about, where tiles do not ask for many more: many enough that most lie close to others, few enough for the memory
+/// that they take.
 pub(crate) const WAVE_ESTIMATES: u64 = 1 << 18;
 /// Estimates of a pixel, roughly, where mirrors are about.
 pub(crate) const ESTIMATES_A_PIXEL: u64 = 4;
@@ -26,23 +26,33 @@ pub(crate) const ESTIMATES_A_PIXEL: u64 = 4;
 struct Waves {
     tiles: u32,
     next: u32,
-    /// Estimates of a sample of the tiles before `next`.
-    asked: u64,
+    /// Tiles of the wave before.
+    latest: u32,
+    /// Most estimates of a tile of any wave before, in the mean of the wave.
+    most: u64,
 }
 
 impl Waves {
+    fn new(tiles: u32) -> Self {
+        Self { tiles, next: 0, latest: 0, most: 0 }
+    }
+
     fn next(&mut self) -> Option<Range<u32>> {
         let left = self.tiles - self.next;
         if left == 0 {
             return None;
         }
-        let mean = self.asked.checked_div(u64::from(self.next)).unwrap_or(0).max(u64::from(TILE * TILE));
-        let fit = ((WAVE_ESTIMATES / mean) as u32).clamp(1, self.next.max(FIRST_WAVE));
+        let fit = ((WAVE_ESTIMATES / self.most.max(u64::from(TILE * TILE))) as u32).min(self.next).max(LEAST_WAVE);
         // Those left in waves of one length.
         let count = left.div_ceil(left.div_ceil(fit));
         let wave = self.next..self.next + count;
-        self.next = wave.end;
+        (self.latest, self.next) = (count, wave.end);
         Some(wave)
+    }
+
+    /// Says how many estimates the latest wave asked for in a sample.
+    fn asked_for(&mut self, estimates: u64) {
+        self.most = self.most.max(estimates / u64::from(self.latest));
     }
 }
 
@@ -81,8 +91,12 @@ enum Next {
 /// What all waves share.
 struct Shared<'a> {
     maps: &'a Maps,
+    k: u32,
     observer: &'a dyn Observer,
     spare: Spare<Buffers>,
+    /// Samples of tiles that were followed, and those that are to be.
+    followed: AtomicU64,
+    samples: u64,
 }
 
 /// What makes estimates, and what it took.
@@ -94,17 +108,27 @@ struct Maker {
 }
 
 impl EyePass<'_> {
-    /// As [`EyePass::run`], by the thesis's recursion.
-    pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
+    /// As [`EyePass::run`], by the thesis's recursion; the `k` nearest photons of estimates that lie close together are looked for
+    /// together. Where it is stopped, whole waves are there.
+    pub fn run_waves(
+        &self,
+        maps: &Maps,
+        k: u32,
+        film: &mut [f32],
+        observer: &dyn Observer,
+    ) -> Result<Counters, Cancelled> {
         let tiles = self.tiles(TILE);
-        let shared = Shared { maps, observer, spare: Spare::new() };
-        let mut waves = Waves { tiles: tiles.count(), next: 0, asked: 0 };
+        let samples = u64::from(tiles.count()) * u64::from(self.spp);
+        let shared = Shared { maps, k, observer, spare: Spare::default(), followed: AtomicU64::new(0), samples };
+        let mut waves = Waves::new(tiles.count());
         let (mut made, mut maker) = (Vec::new(), Maker::default());
         // Lists that waves hand on to one another.
         let mut lists = Vec::new();
         // The wave that has been followed, but for its last estimates.
         let mut behind: Option<Wave> = None;
-        while let Some(range) = waves.next() {
+        while let Some(range) = waves.next()
+            && !observer.cancelled()
+        {
             let mut wave = self.start(range, &tiles, &mut lists);
             let estimates = || {
                 behind.take().map(|mut wave| {
@@ -115,9 +139,8 @@ impl EyePass<'_> {
             let (done, ()) = rayon::join(estimates, || self.follow_wave(&mut wave, &shared));
             if let Some(done) = done {
                 done.finish(&mut made, &mut lists);
-                observer.progress(made.len() as u64, u64::from(tiles.count()));
             }
-            waves.asked += wave.tiles.iter().map(|tile| tile.pooled.queries.len() as u64).sum::<u64>();
+            waves.asked_for(wave.tiles.iter().map(|tile| tile.pooled.queries.len() as u64).sum());
             while wave.samples + 1 < self.spp && self.make(&mut wave, &shared, &mut maker) {
                 self.follow_wave(&mut wave, &shared);
             }
@@ -145,16 +168,20 @@ impl EyePass<'_> {
     }
 
     /// Follows the next sample of all tiles of a wave.
-    fn follow_wave(&self, wave: &mut Wave, Shared { maps, observer, spare }: &Shared) {
+    fn follow_wave(&self, wave: &mut Wave, Shared { maps, observer, spare, followed, samples, .. }: &Shared) {
         let sample = wave.samples;
         // One by one: of a run of tiles that a thread has begun no other can take any when it has none left.
         wave.tiles.par_iter_mut().with_max_len(1).for_each(|started| {
             if sample > 0 {
                 started.before.clone_from(&started.tile.out);
             }
-            if !observer.cancelled() {
-                spare.with(|buffers| self.direct_sample(maps, buffers, sample, started));
+            if observer.cancelled() {
+                return;
             }
+            let Started { tile, tracer, twin, counters, pooled, .. } = started;
+            let started = Followed { tile, tracer, twin, counters, pooled: Some(pooled) };
+            spare.with(|buffers| self.direct_sample(maps, buffers, sample, started));
+            observer.progress(followed.fetch_add(1, Ordering::Relaxed) + 1, *samples);
         });
         wave.next = if observer.cancelled() { Next::Cut } else { Next::Followed };
     }
@@ -174,16 +201,14 @@ impl EyePass<'_> {
         whole
     }
 
-    fn make_pooled(&self, wave: &mut Wave, Shared { maps, observer, .. }: &Shared, maker: &mut Maker) -> bool {
-        // Where not the nearest are asked for, tiles have made their own.
-        let Some(k) = maps.knn else { return true };
+    fn make_pooled(&self, wave: &mut Wave, Shared { maps, k, observer, .. }: &Shared, maker: &mut Maker) -> bool {
         let Maker { pool, tasks, counters } = maker;
         let lists: Vec<&Pooled> = wave.tiles.iter().map(|started| &started.pooled).collect();
         let twin = |task: u32| self.twin(Queries::Pooled, *tasks + task);
-        let Some(done) = pool.answer(&maps.global, k, &lists, twin, counters, *observer) else { return false };
+        let Some(done) = pool.answer(&maps.global, *k, &lists, twin, counters, *observer) else { return false };
         *tasks += done;
         wave.tiles.par_iter_mut().enumerate().for_each(|(number, Started { tile, pooled, .. })| {
-            for (pixel, found) in pool.found(&maps.global, k, number, pooled) {
+            for (pixel, found) in pool.found(&maps.global, *k, number, pooled) {
                 tile.estimated(pixel, &found);
             }
         });
@@ -195,7 +220,6 @@ impl Wave<'_> {
     /// Ends its tiles, and hands on their lists.
     fn finish(self, made: &mut Vec<Option<Made>>, lists: &mut Vec<Pooled>) {
         for started in self.tiles {
-            started.tracer.finish();
             lists.push(started.pooled);
             made.push(started.tile.made(started.counters, self.samples));
         }
@@ -210,14 +234,15 @@ mod tests {
     fn waves_cover_all_tiles_and_stay_small() {
         for tiles in [1, 15, 16, 17, 117, 5000] {
             for asked_a_tile in [0, 4096, 20_000, 1 << 18, 1 << 20] {
-                let mut waves = Waves { tiles, next: 0, asked: 0 };
+                let mut waves = Waves::new(tiles);
                 let mut end = 0;
                 while let Some(wave) = waves.next() {
+                    let count = wave.len() as u32;
                     assert_eq!(wave.start, end, "{tiles} tiles of {asked_a_tile}");
-                    assert!(wave.len() as u32 <= end.max(FIRST_WAVE));
-                    assert!(end == 0 || wave.len() == 1 || wave.len() as u64 * asked_a_tile <= WAVE_ESTIMATES);
+                    assert!(count <= end.max(LEAST_WAVE));
+                    assert!(count <= LEAST_WAVE || u64::from(count) * asked_a_tile <= WAVE_ESTIMATES);
                     end = wave.end;
-                    waves.asked += wave.len() as u64 * asked_a_tile;
+                    waves.asked_for(u64::from(count) * asked_a_tile);
                 }
                 assert_eq!(end, tiles);
             }

@@ -11,6 +11,7 @@ use photinus_profile::queries::QuerySink;
 use photinus_scene::{
     Camera, ColorInput, FilmSettings, Geometry, IntegratorHint, Light, MaterialId, NamedMaterial, Scene, Shape,
 };
+use std::convert::Infallible;
 use std::sync::Arc;
 
 /// Absence of an attribute array in a [`ShapeRecord`].
@@ -147,8 +148,8 @@ impl Compiled {
 
     /// The finished world, with the structure that answers its rays.
     pub fn with_structure(self, structure: Box<dyn Structure>, model: SurfaceModel) -> World {
-        let materials = Materials::new(&self.scene, model);
-        self.with(structure, materials)
+        let Ok(world) = self.build_structure(model, |_| Ok::<_, Infallible>(structure));
+        world
     }
 
     /// The same with a structure that is built meanwhile: neither that nor the pictures of materials keep all threads busy.
@@ -156,21 +157,18 @@ impl Compiled {
     /// # Errors
     /// Those of `build`.
     pub fn build_structure<E: Send>(
-        self,
+        mut self,
         model: SurfaceModel,
         build: impl FnOnce(Arc<Primitives>) -> Result<Box<dyn Structure>, E> + Send,
     ) -> Result<World, E> {
         let primitives = Arc::clone(&self.primitives);
         let (structure, materials) = rayon::join(|| build(primitives), || Materials::new(&self.scene, model));
-        Ok(self.with(structure?, materials))
-    }
-
-    fn with(mut self, structure: Box<dyn Structure>, materials: Materials) -> World {
+        let structure = structure?;
         for shape in &mut self.shapes {
             shape.reads = materials.reads(shape.material) | shape.emission.map_or(Reads::NONE, Reads::of_color);
         }
         let Scene { name, camera, film, integrator, lights, .. } = &self.scene;
-        World {
+        Ok(World {
             name: name.clone(),
             camera: *camera,
             film: *film,
@@ -187,7 +185,7 @@ impl Compiled {
             normals: self.normals,
             uvs: self.uvs,
             colors: self.colors,
-        }
+        })
     }
 }
 

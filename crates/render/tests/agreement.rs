@@ -7,8 +7,9 @@ mod common;
 
 use common::*;
 use photinus_geometry::Vec3;
-use photinus_render::{Aov, Mode, Renderer, Settings, Silent};
+use photinus_render::{Aov, Mode, Observer, Renderer, Settings, Silent};
 use photinus_scene::*;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// An open box with a coloured wall, a glass and a mirror sphere, and a lamp.
 fn box_scene(lamp_side: f32) -> Scene {
@@ -205,6 +206,64 @@ fn any_number_of_threads_gives_the_same_bits() {
                 assert!(one == bits(&world, &settings, threads), "{mode:?}: {threads} threads differ");
             }
         }
+    }
+}
+
+/// Direct pictures with the nearest photons: several waves of tiles, samples one after another, twins or none.
+#[test]
+fn estimates_of_many_tiles_are_those_of_any_threads_and_twins() {
+    let mut scene = box_scene(0.2);
+    (scene.film.width, scene.film.height) = (340, 330);
+    let world = world(scene);
+    let direct = Settings { photons: Some(5_000), knn: Some(20), spp: 2, ..settings(Mode::Direct) };
+    let picture = |threads: usize, profile_every: u32| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+        pool.install(|| render(&world, Settings { profile_every, ..direct.clone() }, 1).0)
+    };
+    let one = picture(1, 0);
+    assert!(one.iter().any(|pixel| *pixel != Vec3::ZERO) && one.iter().all(|pixel| pixel.is_finite()));
+    for (threads, profile_every) in [(2, 0), (7, 0), (2, 1), (2, 3)] {
+        assert!(one == picture(threads, profile_every), "{threads} threads, a twin in {profile_every} differ");
+    }
+}
+
+/// Stopped at any moment, a direct picture is what whole samples of whole waves make, and the next try makes the whole one.
+#[test]
+fn a_stopped_direct_picture_is_made_of_whole_samples() {
+    let mut scene = box_scene(0.2);
+    (scene.film.width, scene.film.height) = (340, 330);
+    let world = world(scene);
+    let direct = Settings { photons: Some(5_000), knn: Some(20), spp: 2, ..settings(Mode::Direct) };
+    let whole = render(&world, direct.clone(), 1).0;
+    let half = render(&world, Settings { spp: 1, ..direct.clone() }, 1).0;
+    let mut kept = 0;
+    for asked in [1, 30, 60, 90, 120, 150] {
+        let mut renderer = Renderer::new(&world, direct.clone(), &Silent).expect("nothing stops it");
+        let channels = renderer.layout().channels();
+        let picture = |renderer: &Renderer| -> Vec<Vec3> {
+            renderer.pixels().chunks_exact(channels).map(Vec3::from_slice).collect()
+        };
+        if renderer.render_pass(&StopAfter(asked.into())).is_err() {
+            if renderer.has_picture() {
+                kept += 1;
+                for (pixel, found) in picture(&renderer).iter().enumerate() {
+                    let is_known = [whole[pixel], half[pixel], Vec3::ZERO].contains(found);
+                    assert!(is_known, "stopped when asked {asked} times: pixel {pixel} is {found}");
+                }
+            }
+            renderer.render_pass(&Silent).expect("nothing stops it");
+        }
+        assert!(picture(&renderer) == whole, "stopped when asked {asked} times, then not");
+    }
+    assert!(kept > 0, "no stopped picture was kept");
+}
+
+/// Stops when it has been asked so often.
+struct StopAfter(AtomicU32);
+
+impl Observer for StopAfter {
+    fn cancelled(&self) -> bool {
+        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
     }
 }
 

@@ -1,6 +1,7 @@
 //! OpenEXR through the `exr` crate's block level: headers first, then sizes, then one block after another.
 
 use super::dwa;
+use super::guarded;
 use super::texels::{DecodedImage, Texels};
 use crate::error::{ImageError, Result};
 use crate::image::{Channel, Image, Layer, Layers, split_channel_name};
@@ -38,9 +39,12 @@ pub(super) fn read(bytes: &[u8], path: &Path, limits: Limits) -> Result<Layers> 
     let chunks = full_resolution_chunks(bytes, first_chunk, chunk_count, &meta, path)?;
     let mut missing: Vec<usize> = meta.headers.iter().map(|header| header.layer_size.area()).collect();
     for batch in chunks.chunks(BATCH) {
-        let blocks: Vec<_> = batch.par_iter().map(|chunk| decompress(chunk, &meta)).collect();
+        // Each guarded on the thread that it is on.
+        let unpack =
+            |chunk: &&[u8]| guarded(path, || decompress(chunk, &meta).map_err(|error| codec_error(path, error)));
+        let blocks: Vec<_> = batch.par_iter().map(unpack).collect();
         for block in blocks {
-            let block = block.map_err(|error| codec_error(path, error))?;
+            let block = block?;
             let part = block.index.layer;
             missing[part] = missing[part].saturating_sub(block.index.pixel_size.area());
             copy_block(&block, &meta.headers[part], &mut planes[part])

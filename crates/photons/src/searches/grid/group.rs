@@ -84,7 +84,7 @@ impl Grid {
             out = rest;
             members.clear();
             members.extend(part.iter().map(|q| Member { radius: q.radius, query: PreparedQuery::new(q, kernel) }));
-            // Questions that make no sense have no neighbours.
+            // Questions that make no sense have no neighbours; the rare others among them look by themselves, too.
             let sense = |member: &Member| member.query.r2 >= 0.0;
             if members.iter().all(sense) {
                 group.answer(&members, answers);

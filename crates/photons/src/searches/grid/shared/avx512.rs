@@ -262,3 +262,49 @@ fn gather_rows<const KERNEL: u8>(shared: &Shared, query: &PreparedQuery) -> Gath
     }
     Gathered { flux: Vec3::from_array(flux.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Among numbers spread evenly, in heaps, equal or at the ends of what there is: where it finds the k-th it is that of a sort, and it
+    /// finds it where they are spread evenly.
+    #[test]
+    fn the_kth_of_few_is_that_of_a_sort() {
+        if !is_x86_feature_detected!("avx512f") || !is_x86_feature_detected!("bmi1") {
+            return;
+        }
+        let hash = |i: usize| ((i as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f32 / (1u32 << 24) as f32;
+        let spread = |low: f32, high: f32| move |i: usize| low + (high - low) * (hash(i) * 0.998 + 0.001);
+        let sets: [(f32, f32, &dyn Fn(usize) -> f32); 7] = [
+            (0.8, 1.25, &spread(0.8, 1.25)),
+            (80.0, 125.0, &|i| 80.0 + (hash(i) * 8.0).floor() * 5.0 + 1.0),
+            (0.8, 1.25, &|_| 1.0),
+            (0.8, 1.25, &|i| if i % 2 == 0 { 0.81 } else { 1.24 }),
+            (2.6e38, 3.4e38, &spread(2.6e38, 3.4e38)),
+            (0.8e-44, 1.25e-44, &|_| 1.1e-44),
+            (0.0, 0.0, &|_| 0.0),
+        ];
+        for (number, (low, high, value)) in sets.into_iter().enumerate() {
+            let (mut found, mut asked) = (0, 0);
+            for count in [1, 2, 15, 16, 17, 40, 100] {
+                let mut values: Vec<f32> = (0..count).map(value).collect();
+                let mut sorted = values.clone();
+                sorted.sort_unstable_by(f32::total_cmp);
+                pad(&mut values);
+                for k in 1..=count {
+                    // SAFETY: the processor has AVX-512F and BMI1, and with the first POPCNT.
+                    let kth = unsafe { kth_of_few(&values, Among { low, high, count }, k) };
+                    assert!(kth.is_none_or(|kth| kth == sorted[k - 1]), "set {number}: {k} of {count}: {kth:?}");
+                    (found, asked) = (found + usize::from(kth.is_some()), asked + 1);
+                }
+            }
+            if number == 0 {
+                assert!(found * 10 > asked * 9, "{found} of {asked}");
+            }
+            if number == 2 {
+                assert!(found < asked, "more than sixteen equal numbers are too many");
+            }
+        }
+    }
+}
