@@ -267,6 +267,8 @@ fn gather_rows<const KERNEL: u8>(shared: &Shared, query: &PreparedQuery) -> Gath
 mod tests {
     use super::*;
 
+    type Values<'a> = dyn Fn(usize) -> f32 + 'a;
+
     /// Among numbers spread evenly, in heaps, equal or at the ends of what there is: where it finds the k-th it is that of a sort, and it
     /// finds it where they are spread evenly.
     #[test]
@@ -276,16 +278,16 @@ mod tests {
         }
         let hash = |i: usize| ((i as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f32 / (1u32 << 24) as f32;
         let spread = |low: f32, high: f32| move |i: usize| low + (high - low) * (hash(i) * 0.998 + 0.001);
-        let sets: [(f32, f32, &dyn Fn(usize) -> f32); 7] = [
-            (0.8, 1.25, &spread(0.8, 1.25)),
-            (80.0, 125.0, &|i| 80.0 + (hash(i) * 8.0).floor() * 5.0 + 1.0),
-            (0.8, 1.25, &|_| 1.0),
-            (0.8, 1.25, &|i| if i % 2 == 0 { 0.81 } else { 1.24 }),
-            (2.6e38, 3.4e38, &spread(2.6e38, 3.4e38)),
-            (0.8e-44, 1.25e-44, &|_| 1.1e-44),
-            (0.0, 0.0, &|_| 0.0),
+        let sets: [([f32; 2], &Values); 7] = [
+            ([0.8, 1.25], &spread(0.8, 1.25)),
+            ([80.0, 125.0], &|i| 80.0 + (hash(i) * 8.0).floor() * 5.0 + 1.0),
+            ([0.8, 1.25], &|_| 1.0),
+            ([0.8, 1.25], &|i| if i % 2 == 0 { 0.81 } else { 1.24 }),
+            ([2.6e38, 3.4e38], &spread(2.6e38, 3.4e38)),
+            ([0.8e-44, 1.25e-44], &|_| 1.1e-44),
+            ([0.0, 0.0], &|_| 0.0),
         ];
-        for (number, (low, high, value)) in sets.into_iter().enumerate() {
+        for (number, ([low, high], value)) in sets.into_iter().enumerate() {
             let (mut found, mut asked) = (0, 0);
             for count in [1, 2, 15, 16, 17, 40, 100] {
                 let mut values: Vec<f32> = (0..count).map(value).collect();
