@@ -99,8 +99,8 @@ pub trait Search: Send + Sync {
     /// As [`Search::visit`], with the work added to `counters`.
     fn visit_counted(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32), counters: &mut SearchCounters);
 
-    /// A number that is near for queries that lie close to one another, see [`Search::gather_nearest_ordered`]. Results do not depend on
-    /// it.
+    /// A number that is near for queries that lie close to one another, see [`Search::gather_nearest_ordered`].
+    /// Results do not depend on it.
     fn neighbourhood(&self, _query: &GatherQuery) -> u64 {
         0
     }

@@ -1,9 +1,11 @@
-//! Companions of a visible point: more places of its pixel, on the plane of its surface, that the caustic map is asked about.
+//! Companions of a visible point: more places of its pixel, on the plane of its surface, that the caustic map is
+//! asked about.
 //!
-//! Where a caustic ends sharply, its rim crosses pixels, and one place a pixel and pass is most of the error. A camera ray
-//! costs far more than a search of the map: the tangent plane stands for the surface within a pixel. Together with the
-//! point itself the places are a lattice of five shifted at random, so that each is spread over the pixel as camera rays
-//! are, or of 17 where passes before saw a rim. Where a surface ends inside of the pixel, its plane goes on for that pixel only.
+//! Where a caustic ends sharply, its rim crosses pixels, and one place a pixel and pass is most of the error. A
+//! camera ray costs far more than a search of the map: the tangent plane stands for the surface within a pixel.
+//! Together with the point itself the places are a lattice of five shifted at random, so that each is spread over the
+//! pixel as camera rays are, or of 17 where passes before saw a rim. Where a surface ends inside of the pixel, its
+//! plane goes on for that pixel only.
 
 use crate::eye_pass::{EyePass, Path};
 use crate::maps::{Estimate, Estimated};
@@ -73,8 +75,8 @@ impl EyePass<'_> {
     }
 }
 
-/// Place `number` of `count` in the unit square. With a^2 + 1 places and a step of a they are a square lattice turned so that
-/// no two share a row or a column: a rim along a row of pixels is resolved by all of them.
+/// Place `number` of `count` in the unit square. With a^2 + 1 places and a step of a they are a square lattice turned
+/// so that no two share a row or a column: a rim along a row of pixels is resolved by all of them.
 fn place(number: u32, count: u32, step: u32) -> [f32; 2] {
     [number, number * step % count].map(|c| c as f32 / count as f32)
 }
@@ -123,8 +125,8 @@ mod tests {
         squares / 4096.0 - (sum / 4096.0).powi(2)
     }
 
-    /// Against square lattices of about as many places: along rows and columns there is no comparison, and the worst direction is a
-    /// better one.
+    /// Against square lattices of about as many places: along rows and columns there is no comparison, and the worst
+    /// direction is a better one.
     #[test]
     fn rims_along_rows_are_resolved_by_all_places() {
         for ([count, step], edge) in [(PLACES, 2), (RIM_PLACES, 4)] {

@@ -156,8 +156,8 @@ impl Map {
         counters.photons_found += out.iter().map(|found| u64::from(found.count)).sum::<u64>();
     }
 
-    /// Makes the estimates `list` of the batch `estimates`; `out` gets one entry for each. The radius of a query is a lower bound for
-    /// that of the map: a wide pixel gathers over its own width.
+    /// Makes the estimates `list` of the batch `estimates`; `out` gets one entry for each. The radius of a query is a
+    /// lower bound for that of the map: a wide pixel gathers over its own width.
     pub fn estimate(
         &self,
         list: &[Estimate],
@@ -281,8 +281,8 @@ impl Map {
         Estimated { radiance: factor * irradiance, density: density(count, radius), radius }
     }
 
-    /// The map's radius, or the pixel's where that is wider (of each of its places, where there are several), up to three times the map's so that far pixels do not
-    /// gather everything.
+    /// The map's radius, or the pixel's where that is wider (of each of its places, where there are several), up to
+    /// three times the map's so that far pixels do not gather everything.
     fn radius_for(&self, e: &Estimate) -> f32 {
         let (part, own) = match self.kind {
             MapKind::Global => (e.scale, e.query.radius),
@@ -371,8 +371,8 @@ fn density(count: u32, radius: f32) -> f32 {
     count as f32 / (std::f32::consts::PI * radius * radius).max(1e-20)
 }
 
-/// Makes `count` estimates, run by run, as `work(run, counted, counters)` does: their time is taken, and what share of it the searches
-/// have where runs are counted.
+/// Makes `count` estimates, run by run, as `work(run, counted, counters)` does: their time is taken, and what share
+/// of it the searches have where runs are counted.
 fn in_runs(
     count: usize,
     twin: &mut Twin,

@@ -1,5 +1,5 @@
-//! Estimates of many tiles, made together: those that lie close to one another look the photons around them up once, whichever
-//! tiles ask for them.
+//! Estimates of many tiles, made together: those that lie close to one another look the photons around them up once,
+//! whichever tiles ask for them.
 
 use crate::control::Observer;
 use crate::counters::Counters;
@@ -64,7 +64,8 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// Answers the estimates of lists that are located, and counts them; nothing where it is stopped. Task `i` is counted as its twin
+    /// Answers the estimates of lists that are located, and counts them; nothing where it is stopped. Task `i` is
+    /// counted as its twin
     /// `twin(i)` says; how many there were.
     pub fn answer(
         &mut self,

@@ -6,8 +6,8 @@ const DIGITS: usize = 1 << DIGIT_BITS;
 /// Below so many elements comparing is faster than counting.
 const FEW: usize = 1024;
 
-/// Makes `order` the places, numbers of `place_bits` bits, of pairs of a key and a place, sorted by keys and where those are equal in
-/// the order of the pairs; false where keys differ in too many bits for that.
+/// Makes `order` the places, numbers of `place_bits` bits, of pairs of a key and a place, sorted by keys and where
+/// those are equal in the order of the pairs; false where keys differ in too many bits for that.
 pub(crate) fn sorted_places(
     pairs: impl Iterator<Item = (u64, u64)> + Clone,
     place_bits: u32,

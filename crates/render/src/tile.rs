@@ -285,9 +285,9 @@ impl<'a> Tiles<'a> {
         }
     }
 
-    /// Renders all tiles by `render(buffers, index, tile, counters)`, which returns how many samples it has made, fewer than
-    /// asked for only where it is stopped; puts them into `film`. What is in the buffers, which tiles hand on to one another,
-    /// must not matter.
+    /// Renders all tiles by `render(buffers, index, tile, counters)`, which returns how many samples it has made,
+    /// fewer than asked for only where it is stopped; puts them into `film`. What is in the buffers, which tiles hand
+    /// on to one another, must not matter.
     pub fn run<B: Default + Send>(
         &self,
         film: &mut [f32],

@@ -1,5 +1,5 @@
-//! The order of a direct render: tiles are followed in waves, and the estimates of a wave are made together, while the next one is
-//! followed.
+//! The order of a direct render: tiles are followed in waves, and the estimates of a wave are made together, while
+//! the next one is followed.
 
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
@@ -16,8 +16,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Least tiles of a wave, so that many threads have some; each has as many more at most as all before it.
 const LEAST_WAVE: u32 = 16;
-/// Estimates of a wave, about, where tiles do not ask for many more: many enough that most lie close to others, few enough for the memory
-/// that they take.
+/// Estimates of a wave, about, where tiles do not ask for many more: many enough that most lie close to others, few
+/// enough for the memory that they take.
 pub(crate) const WAVE_ESTIMATES: u64 = 1 << 18;
 /// Estimates of a pixel, roughly, where mirrors are about.
 pub(crate) const ESTIMATES_A_PIXEL: u64 = 4;
@@ -108,8 +108,8 @@ struct Maker {
 }
 
 impl EyePass<'_> {
-    /// As [`EyePass::run`], by the thesis's recursion; the `k` nearest photons of estimates that lie close together are looked for
-    /// together. Where it is stopped, whole waves are there.
+    /// As [`EyePass::run`], by the thesis's recursion; the `k` nearest photons of estimates that lie close together
+    /// are looked for together. Where it is stopped, whole waves are there.
     pub fn run_waves(
         &self,
         maps: &Maps,
@@ -186,7 +186,8 @@ impl EyePass<'_> {
         wave.next = if observer.cancelled() { Next::Cut } else { Next::Followed };
     }
 
-    /// Makes the estimates of a wave's next sample; false where that has not been followed or is stopped: it is then forgotten.
+    /// Makes the estimates of a wave's next sample; false where that has not been followed or is stopped: it is then
+    /// forgotten.
     fn make(&self, wave: &mut Wave, shared: &Shared, maker: &mut Maker) -> bool {
         let whole = match std::mem::take(&mut wave.next) {
             Next::NotBegun => return false,

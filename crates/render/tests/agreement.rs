@@ -158,8 +158,8 @@ fn photons_find_the_light_of_the_path_tracer() {
     for (name, scene) in
         [("box", box_scene(0.6)), ("outdoor", outdoor_scene()), ("smooth", smooth_scene()), ("window", window_scene())]
     {
-        // Few of the photons of the sky find the window: the spread of the mean over seeds is 1 % after 16 passes; and some of
-        // what shines outside lies within the fixed radius of the darkest block.
+        // Few of the photons of the sky find the window: the spread of the mean over seeds is 1 % after 16 passes;
+        // and some of what shines outside lies within the fixed radius of the darkest block.
         let (block_limit, mean_limit) = if name == "window" { (0.2, 0.02) } else { (0.05, 0.01) };
         let world = world(scene);
         let reference = blocks(&render(&world, Settings { spp: 32, ..settings(Mode::Path) }, 64).0);

@@ -107,13 +107,14 @@ thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is inside of a third-party decoder, where a panic is an error like any other: programs may have their panic hook
-/// say nothing then.
+/// Whether this thread is inside of a third-party decoder, where a panic is an error like any other: programs may
+/// have their panic hook say nothing then.
 pub fn is_decoding() -> bool {
     GUARDED.get()
 }
 
-/// Runs a third-party decoder; a panic inside it (on a file that breaks an assumption of its own) is an error like any other.
+/// Runs a third-party decoder; a panic inside it (on a file that breaks an assumption of its own) is an error like
+/// any other.
 fn guarded<T>(path: &Path, decoder: impl FnOnce() -> Result<T>) -> Result<T> {
     let outer = GUARDED.replace(true);
     let decoded = catch_unwind(AssertUnwindSafe(decoder));

@@ -1,4 +1,5 @@
-//! Searches for the nearest, neighbours together: queries that lie close to one another look the photons around them up once.
+//! Searches for the nearest, neighbours together: queries that lie close to one another look the photons around them
+//! up once.
 
 use super::Grid;
 use super::kernels::SharedKernels;
@@ -179,8 +180,8 @@ impl Group<'_> {
         true
     }
 
-    /// Answers members by the photons shared, up to the first whose nearest are not all among them; returns how many, and how
-    /// many photons that one found.
+    /// Answers members by the photons shared, up to the first whose nearest are not all among them; returns how many,
+    /// and how many photons that one found.
     fn answer_shared(&mut self, ball: &Ball, members: &[Member], out: &mut [GatheredNearest]) -> (usize, u32) {
         let SharedKernels { nearest, gather, .. } = self.grid.kernels.shared;
         let finder = &mut self.finder;

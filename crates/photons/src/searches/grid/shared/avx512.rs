@@ -185,8 +185,8 @@ struct Among {
 /// Numbers that the `k`-th may be off the place in proportion, more or less.
 const ASTRAY: f32 = 6.0;
 
-/// The `k`-th least (from 1) of full lanes of numbers, infinities behind `among.count` of them; where the numbers about the place in
-/// proportion are few enough and it is one of them.
+/// The `k`-th least (from 1) of full lanes of numbers, infinities behind `among.count` of them; where the numbers
+/// about the place in proportion are few enough and it is one of them.
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
 fn kth_of_few(values: &[f32], among: Among, k: usize) -> Option<f32> {
     let (lanes, _) = values.as_chunks::<LANES>();
@@ -269,8 +269,8 @@ mod tests {
 
     type Values<'a> = dyn Fn(usize) -> f32 + 'a;
 
-    /// Among numbers spread evenly, in heaps, equal or at the ends of what there is: where it finds the k-th it is that of a sort, and it
-    /// finds it where they are spread evenly.
+    /// Among numbers spread evenly, in heaps, equal or at the ends of what there is: where it finds the k-th it is
+    /// that of a sort, and it finds it where they are spread evenly.
     #[test]
     fn the_kth_of_few_is_that_of_a_sort() {
         if !is_x86_feature_detected!("avx512f") || !is_x86_feature_detected!("bmi1") {
