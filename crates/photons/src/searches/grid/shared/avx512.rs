@@ -10,15 +10,16 @@ use crate::photon::LOW_MASK;
 use crate::searches::grid::avx512::{distances_sq, dot, floats, normals, splat, tree_sum, weights, words};
 use crate::searches::grid::blocks::{Block, LANES};
 use crate::searches::grid::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, SharedKernels, kernel_index};
-use crate::searches::grid::kth::{kth_least, pad};
+use crate::searches::grid::kth::kth_least;
 use photinus_geometry::Vec3;
 use std::arch::x86_64::*;
 
 /// For processors that have AVX-512F, POPCNT and BMI1.
 pub(crate) const KERNELS: SharedKernels = SharedKernels { collect, nearest, gather };
 
-/// The `k`-th squared distance is looked for between these parts of the guess first.
-const BRACKET: [f32; 2] = [0.8, 1.25];
+/// Parts of the guess between two of which the `k`-th squared distance is looked for: where neighbours ask it is there
+/// nineteen times in twenty, and with it some ten others.
+const BRACKETS: [f32; 3] = [0.9, 1.0, 1.1];
 
 fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
     // SAFETY: these kernels are handed out only where the processor has AVX-512F, POPCNT and BMI1.
@@ -126,17 +127,15 @@ fn within_60(lanes: __mmask16, normal: [__m512; 3], quarter: __m512, facing: [__
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
 fn nearest_rows<const SAME_NORMAL: bool>(shared: &mut Shared, query: &PreparedQuery, k: usize, guess_sq: f32) -> Found {
     let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
-    let low = BRACKET[0] * guess_sq;
-    let (bracket_low, bracket_high) = (_mm512_set1_ps(low), _mm512_set1_ps(BRACKET[1] * guess_sq));
+    let limits = BRACKETS.map(|part| _mm512_set1_ps(part * guess_sq));
     let infinite = _mm512_set1_ps(f32::INFINITY);
     let rows = shared.filled.len();
-    let Shared { rows: all_rows, distances_sq, some, .. } = shared;
-    let all_rows = &all_rows[..rows];
+    let Shared { rows: all_rows, distances_sq, .. } = shared;
     distances_sq.resize(rows, [0.0; LANES]);
-    some.clear();
-    some.reserve((rows + 1) * LANES);
-    let (mut count, mut below, mut between) = (0, 0, 0);
-    for (row, out) in all_rows.iter().zip(&mut *distances_sq) {
+    // By lane: of all found, and of those up to each limit.
+    let (mut counts, one) = ([_mm512_setzero_si512(); 4], _mm512_set1_epi32(1));
+    let mut farthest = _mm512_setzero_ps();
+    for (row, out) in all_rows[..rows].iter().zip(&mut *distances_sq) {
         let [x, y, z] = &row.position;
         let d = [
             _mm512_sub_ps(floats(x), position[0]),
@@ -151,98 +150,59 @@ fn nearest_rows<const SAME_NORMAL: bool>(shared: &mut Shared, query: &PreparedQu
         }
         // SAFETY: the array holds the sixteen numbers written.
         unsafe { _mm512_storeu_ps(out.as_mut_ptr(), _mm512_mask_blend_ps(found, infinite, d2)) };
-        let far = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(found, d2, bracket_low);
-        let inside = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(far, d2, bracket_high);
-        // SAFETY: there is room for sixteen a row and sixteen more, of which the first ones, as many as `inside` has
-        // bits, are kept.
-        unsafe { _mm512_storeu_ps(some.as_mut_ptr().add(between), _mm512_maskz_compress_ps(inside, d2)) };
-        count += found.count_ones();
-        below += (found & !far).count_ones() as usize;
-        between += inside.count_ones() as usize;
+        let up_to = |limit| _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(found, d2, limit);
+        let lanes = [found, up_to(limits[0]), up_to(limits[1]), up_to(limits[2])];
+        for (count, lanes) in counts.iter_mut().zip(lanes) {
+            *count = _mm512_mask_add_epi32(*count, lanes, *count, one);
+        }
+        farthest = _mm512_mask_max_ps(farthest, found, farthest, d2);
     }
-    let limit_sq = if (count as usize) < k {
-        farthest(distances_sq)
-    } else if below < k && k <= below + between {
-        // SAFETY: that many were written.
-        unsafe { some.set_len(between) };
-        pad(some);
-        let among = Among { low, high: BRACKET[1] * guess_sq, count: between };
-        kth_of_few(some, among, k - below).unwrap_or_else(|| kth_least(some, low, k - below))
+    let [count, up_to @ ..] = counts.map(|lanes| _mm512_reduce_add_epi32(lanes) as usize);
+    let limit_sq = if count < k {
+        _mm512_reduce_max_ps(farthest)
     } else {
-        kth_least(distances_sq.as_flattened(), -1.0, k)
+        let upper = if k <= up_to[1] { 1 } else { 2 };
+        let (below, within) = (up_to[upper - 1], up_to[upper]);
+        if below < k && k <= within && within - below <= LANES {
+            kth_of_few(distances_sq, [limits[upper - 1], limits[upper]], k - below)
+        } else {
+            kth_least(distances_sq.as_flattened(), -1.0, k)
+        }
     };
-    Found { count, limit_sq }
+    Found { count: count as u32, limit_sq }
 }
 
-/// Numbers spread over an interval: above `low`, up to `high`.
-#[derive(Clone, Copy)]
-struct Among {
-    low: f32,
-    high: f32,
-    count: usize,
-}
-
-/// Numbers that the `k`-th may be off the place in proportion, more or less.
-const ASTRAY: f32 = 6.0;
-
-/// The `k`-th least (from 1) of full lanes of numbers, infinities behind `among.count` of them; where the numbers
-/// about the place in proportion are few enough and it is one of them.
+/// The `k`-th least (from 1) of the numbers above the first and up to the second limit, of which there are that many
+/// at least and sixteen at most.
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
-fn kth_of_few(values: &[f32], among: Among, k: usize) -> Option<f32> {
-    let (lanes, _) = values.as_chunks::<LANES>();
-    let step = (among.high - among.low) / among.count as f32;
-    let guess = among.low + step * (k as f32 - 0.5);
-    let limit = _mm512_set1_ps(guess);
-    let up_to_guess = lanes
-        .iter()
-        .map(|lanes| _mm512_cmp_ps_mask::<_CMP_LE_OQ>(floats(lanes), limit).count_ones() as usize)
-        .sum::<usize>();
-    // How many numbers farther up, or down.
-    let off = k as f32 - up_to_guess as f32;
-    let (low, high) =
-        if off > 0.0 { (guess, guess + step * (off + ASTRAY)) } else { (guess + step * (off - ASTRAY), guess) };
-    let (low, high) = (_mm512_set1_ps(low), _mm512_set1_ps(high));
+fn kth_of_few(values: &[[f32; LANES]], [low, high]: [__m512; 2], k: usize) -> f32 {
+    let infinite = _mm512_set1_ps(f32::INFINITY);
     let mut few = [f32::INFINITY; 2 * LANES];
-    let (mut below, mut count) = (0, 0);
-    for lanes in lanes {
+    let mut count = 0;
+    for lanes in values {
         let v = floats(lanes);
         let above = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(v, low);
         let inside = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(above, v, high);
-        if count > LANES {
-            return None;
-        }
-        // SAFETY: sixteen places lie behind the first `count`, which is sixteen at most.
-        unsafe {
-            _mm512_storeu_ps(
-                few.as_mut_ptr().add(count),
-                _mm512_mask_compress_ps(_mm512_set1_ps(f32::INFINITY), inside, v),
-            )
-        };
-        below += (!above).count_ones() as usize;
+        let place = &mut few[count..][..LANES];
+        // SAFETY: the slice holds the sixteen numbers written.
+        unsafe { _mm512_storeu_ps(place.as_mut_ptr(), _mm512_mask_compress_ps(infinite, inside, v)) };
         count += inside.count_ones() as usize;
     }
-    if count > LANES || k <= below || k > below + count {
-        return None;
+    // SAFETY: the array holds the sixteen numbers read.
+    let few = unsafe { _mm512_loadu_ps(few.as_ptr()) };
+    // Each is compared with the fifteen others in turn: how many are less.
+    let one = _mm512_set1_epi32(1);
+    let mut turned = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    let mut ranks = _mm512_setzero_si512();
+    for _ in 1..LANES {
+        turned = _mm512_add_epi32(turned, one);
+        // Of an index its lowest four bits count.
+        let less = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(_mm512_permutexvar_ps(turned, few), few);
+        ranks = _mm512_mask_add_epi32(ranks, less, ranks, one);
     }
-    // The largest of those that fewer than `k` are less than; their bits order as they do, as none is negative.
-    let few: &[f32; LANES] = few.first_chunk()?;
-    let all = floats(few);
-    let wanted = (k - below) as u32;
-    let rank = |value: f32| _mm512_cmp_ps_mask::<_CMP_LT_OQ>(all, _mm512_set1_ps(value)).count_ones();
-    let kth = few.iter().map(|value| if rank(*value) < wanted { value.to_bits() } else { 0 }).max()?;
-    Some(f32::from_bits(kth))
-}
-
-/// The largest finite number; 0 without any.
-#[inline]
-#[target_feature(enable = "avx512f")]
-fn farthest(distances_sq: &[[f32; LANES]]) -> f32 {
-    let infinite = _mm512_set1_ps(f32::INFINITY);
-    let largest = distances_sq.iter().fold(_mm512_setzero_ps(), |largest, lanes| {
-        let d2 = floats(lanes);
-        _mm512_mask_max_ps(largest, _mm512_cmp_ps_mask::<_CMP_LT_OQ>(d2, infinite), largest, d2)
-    });
-    _mm512_reduce_max_ps(largest)
+    // The largest of those that fewer than `k` are less than.
+    let low_ranks = _mm512_cmplt_epi32_mask(ranks, _mm512_set1_epi32(k as i32));
+    _mm512_mask_reduce_max_ps(low_ranks, few)
 }
 
 #[target_feature(enable = "avx512f,popcnt")]
@@ -263,50 +223,3 @@ fn gather_rows<const KERNEL: u8>(shared: &Shared, query: &PreparedQuery) -> Gath
     Gathered { flux: Vec3::from_array(flux.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    type Values<'a> = dyn Fn(usize) -> f32 + 'a;
-
-    /// Among numbers spread evenly, in heaps, equal or at the ends of what there is: where it finds the k-th it is
-    /// that of a sort, and it finds it where they are spread evenly.
-    #[test]
-    fn the_kth_of_few_is_that_of_a_sort() {
-        if !is_x86_feature_detected!("avx512f") || !is_x86_feature_detected!("bmi1") {
-            return;
-        }
-        let hash = |i: usize| ((i as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f32 / (1u32 << 24) as f32;
-        let spread = |low: f32, high: f32| move |i: usize| low + (high - low) * (hash(i) * 0.998 + 0.001);
-        let sets: [([f32; 2], &Values); 7] = [
-            ([0.8, 1.25], &spread(0.8, 1.25)),
-            ([80.0, 125.0], &|i| 80.0 + (hash(i) * 8.0).floor() * 5.0 + 1.0),
-            ([0.8, 1.25], &|_| 1.0),
-            ([0.8, 1.25], &|i| if i % 2 == 0 { 0.81 } else { 1.24 }),
-            ([2.6e38, 3.4e38], &spread(2.6e38, 3.4e38)),
-            ([0.8e-44, 1.25e-44], &|_| 1.1e-44),
-            ([0.0, 0.0], &|_| 0.0),
-        ];
-        for (number, ([low, high], value)) in sets.into_iter().enumerate() {
-            let (mut found, mut asked) = (0, 0);
-            for count in [1, 2, 15, 16, 17, 40, 100] {
-                let mut values: Vec<f32> = (0..count).map(value).collect();
-                let mut sorted = values.clone();
-                sorted.sort_unstable_by(f32::total_cmp);
-                pad(&mut values);
-                for k in 1..=count {
-                    // SAFETY: the processor has AVX-512F and BMI1, and with the first POPCNT.
-                    let kth = unsafe { kth_of_few(&values, Among { low, high, count }, k) };
-                    assert!(kth.is_none_or(|kth| kth == sorted[k - 1]), "set {number}: {k} of {count}: {kth:?}");
-                    (found, asked) = (found + usize::from(kth.is_some()), asked + 1);
-                }
-            }
-            if number == 0 {
-                assert!(found * 10 > asked * 9, "{found} of {asked}");
-            }
-            if number == 2 {
-                assert!(found < asked, "more than sixteen equal numbers are too many");
-            }
-        }
-    }
-}

@@ -82,8 +82,6 @@ pub(crate) struct Shared {
     same_normal: bool,
     /// Squared distance of each lane of each row where it is found, infinite elsewhere.
     distances_sq: Vec<Lanes>,
-    /// Scratch of the kernels.
-    some: Vec<f32>,
 }
 
 /// What a query for the nearest found.
