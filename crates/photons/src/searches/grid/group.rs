@@ -23,6 +23,10 @@ const LEAST_RADIUS: f32 = 1e-15;
 const GREATEST_RADIUS: f32 = 1e18;
 /// What rounding may add to a distance, as a part of it, with a margin.
 const SLACK: f32 = 1e-5;
+/// How much the square of a normal's length may be off 1, and a cosine by rounding, with a margin.
+const NORMAL_SLACK: f32 = 1e-3;
+/// The sine of 60 degrees.
+const HALF_SQRT_3: f32 = 0.866_025_4;
 /// More photons than this are not shared, as they would outgrow the caches and the memory that threads are to have.
 const MOST_SHARED: u64 = 1 << 16;
 
@@ -165,8 +169,8 @@ impl Group<'_> {
             return false;
         }
         let mut query = members[0].query;
-        let same_normal = members.iter().all(|member| member.query.normal == query.normal);
-        (query.position, query.r2) = (ball.centre, extent * extent);
+        let normals = Normals::of(members);
+        (query.position, query.r2, query.normal) = (ball.centre, extent * extent, normals.middle);
         let finder = &mut self.finder;
         self.grid.find_blocks(query.position, extent, query.r2, &mut finder.scratch);
         let reached = self.grid.photons_in(&finder.scratch);
@@ -174,7 +178,7 @@ impl Group<'_> {
             return false;
         }
         finder.tested += reached;
-        let share = Share { query, same_normal };
+        let share = Share { query, same_normal: normals.are_same, least_cos: normals.least_cos };
         (self.grid.kernels.shared.collect)(&self.grid.blocks, &finder.scratch.hits, &share, &mut finder.shared);
         finder.shared_extent = extent;
         true
@@ -209,6 +213,33 @@ impl Group<'_> {
             *answer = GatheredNearest { flux: sums.flux, count: sums.count, farthest_sq: found.limit_sq };
         }
         (members.len(), self.k)
+    }
+}
+
+/// Where the members of a group are turned.
+struct Normals {
+    /// The normal of all, or one in the middle of them.
+    middle: Vec3,
+    are_same: bool,
+    /// See [`Share::least_cos`].
+    least_cos: f32,
+}
+
+impl Normals {
+    fn of(members: &[Member]) -> Self {
+        let first = members[0].query.normal;
+        let normals = || members.iter().map(|member| member.query.normal);
+        if normals().all(|normal| normal == first) {
+            return Self { middle: first, are_same: true, least_cos: 0.0 };
+        }
+        let middle = normals().sum::<Vec3>().normalize_or_zero();
+        let cos = normals().fold(1f32, |cos, normal| cos.min(normal.dot(middle)));
+        let is_unit = |normal: Vec3| (normal.length_squared() - 1.0).abs() < NORMAL_SLACK;
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        // Nothing that faces one of them is farther from the middle than 60 degrees and the farthest of them together.
+        let least_cos = 0.5 * cos - HALF_SQRT_3 * sin - 2.0 * NORMAL_SLACK;
+        let narrow = cos > -0.5 && normals().all(is_unit);
+        Self { middle, are_same: false, least_cos: if narrow { least_cos * least_cos.abs() } else { f32::NEG_INFINITY } }
     }
 }
 

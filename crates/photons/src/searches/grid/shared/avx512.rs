@@ -81,6 +81,7 @@ fn collect_blocks(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Sh
     let query = &share.query;
     let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
     let low_limit = _mm512_set1_epi32(query.low_limit as i32);
+    let least_cos = _mm512_set1_ps(share.least_cos);
     let mut heights = _mm512_setzero_si512();
     for block in hits {
         let block = &blocks[*block as usize];
@@ -92,9 +93,14 @@ fn collect_blocks(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Sh
         let low = _mm512_and_si512(surface, _mm512_set1_epi32(LOW_MASK as i32));
         let mut wanted = _mm512_mask_cmple_epu32_mask(near, low, low_limit);
         let normal = normals(surface);
-        let quarter = _mm512_mul_ps(_mm512_set1_ps(0.25), dot(normal, normal));
+        let length_sq = dot(normal, normal);
+        let quarter = _mm512_mul_ps(_mm512_set1_ps(0.25), length_sq);
         if share.same_normal {
             wanted = within_60(wanted, normal, quarter, facing);
+        } else {
+            let cos = dot(normal, facing);
+            let least = _mm512_mul_ps(least_cos, length_sq);
+            wanted = _mm512_mask_cmp_ps_mask::<_CMP_GE_OQ>(wanted, _mm512_mul_ps(cos, _mm512_abs_ps(cos)), least);
         }
         let fields = fields(block, normal, quarter);
         let higher = _mm512_mask_add_epi32(heights, wanted, heights, _mm512_set1_epi32(1));

@@ -67,6 +67,23 @@ pub(crate) struct Share {
     pub(crate) query: PreparedQuery,
     /// Whether all queries have its normal: photons are then tested for it once.
     pub(crate) same_normal: bool,
+    /// Where they have not: the least cosine, squared with its sign, between its normal and that of a photon that may pass
+    /// the test of any.
+    pub(crate) least_cos: f32,
+}
+
+impl Share {
+    /// Whether a photon with this surface word may pass the tests of some query.
+    fn wants(&self, surface: u32) -> bool {
+        if self.same_normal { self.query.accepts(surface) } else { self.query.is_shallow(surface) && self.may_face(surface) }
+    }
+
+    /// Whether a photon of this normal may be within 60 degrees of some query's.
+    fn may_face(&self, surface: u32) -> bool {
+        let (v, n) = (decode_scaled(normal_code(surface), NORMAL_MAX), self.query.normal);
+        let cos = (v.x * n.x + v.y * n.y) + v.z * n.z;
+        cos * cos.abs() >= self.least_cos * ((v.x * v.x + v.y * v.y) + v.z * v.z)
+    }
 }
 
 /// The photons shared, and what the last query found among them.
@@ -100,9 +117,7 @@ fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
     let query = &share.query;
     for block in hits.iter().map(|block| &blocks[*block as usize]) {
         for (lane, d2) in block.distances_sq(query.position).into_iter().enumerate() {
-            let surface = block.surface[lane];
-            let is_wanted = || if share.same_normal { query.accepts(surface) } else { query.is_shallow(surface) };
-            if d2 <= query.r2 && is_wanted() {
+            if d2 <= query.r2 && share.wants(block.surface[lane]) {
                 let height = shared.heights[lane] as usize;
                 if height == shared.filled.len() {
                     shared.add_row();
