@@ -67,6 +67,10 @@ pub(crate) struct PreparedKernel {
 impl PreparedKernel {
     #[inline]
     pub(crate) fn new(kernel: Kernel, r: f32) -> Self {
+        if kernel == Kernel::Constant {
+            // Nothing depends on it.
+            return Self { kernel, inv_r2: 0.0, inv_k: 1.0 };
+        }
         let inv_r2 = 1.0 / (r * r) * (1.0 - 2.4e-7);
         let inv_k = if let Kernel::Cone { k } = kernel { 1.0 / cone_k(k) } else { 1.0 };
         Self { kernel, inv_r2: if inv_r2.is_finite() { inv_r2 } else { 0.0 }, inv_k }

@@ -79,9 +79,13 @@ impl Grid {
         mut out: &mut [GatheredNearest],
     ) -> u64 {
         let mut group = Group { grid: self, k, finder: NearestFinder::new() };
+        let cell = |query: &GatherQuery| (self.cells.fine_cell(query.position, query.normal), query.max_depth);
+        // Of the consecutive pairs that it is asked about the second of one is the first of the next.
+        let mut known = None;
         let same = |a: &GatherQuery, b: &GatherQuery| {
-            self.cells.fine_cell(a.position, a.normal) == self.cells.fine_cell(b.position, b.normal)
-                && a.max_depth == b.max_depth
+            let [a, b] = [known.unwrap_or_else(|| cell(a)), cell(b)];
+            known = Some(b);
+            a == b
         };
         let mut members = Vec::new();
         for part in queries.chunk_by(same) {
@@ -145,8 +149,9 @@ impl Group<'_> {
         let bounds = Aabb::around(members.iter().map(|member| member.query.position));
         let centre = (bounds.min + bounds.max) * 0.5;
         // The middle may be rounded by as much as members lie apart: half of the box's diagonal may fall short.
-        let half = members.iter().fold(0f32, |half, member| half.max((member.query.position - centre).length()));
-        let ball = Ball { centre, half };
+        let half_sq =
+            members.iter().fold(0f32, |half, member| half.max((member.query.position - centre).length_squared()));
+        let ball = Ball { centre, half: half_sq.sqrt() };
         let most = members.iter().fold(0f32, |most, member| most.max(member.radius));
         let mut reach = (self.finder.last_radius * WIDER).min(most);
         let mut left = members;
@@ -239,7 +244,11 @@ impl Normals {
         // Nothing that faces one of them is farther from the middle than 60 degrees and the farthest of them together.
         let least_cos = 0.5 * cos - HALF_SQRT_3 * sin - 2.0 * NORMAL_SLACK;
         let narrow = cos > -0.5 && normals().all(is_unit);
-        Self { middle, are_same: false, least_cos: if narrow { least_cos * least_cos.abs() } else { f32::NEG_INFINITY } }
+        Self {
+            middle,
+            are_same: false,
+            least_cos: if narrow { least_cos * least_cos.abs() } else { f32::NEG_INFINITY },
+        }
     }
 }
 

@@ -229,3 +229,47 @@ fn gather_rows<const KERNEL: u8>(shared: &Shared, query: &PreparedQuery) -> Gath
     Gathered { flux: Vec3::from_array(flux.map(|sum| tree_sum(sum))) * PLACED_UNITS, count }
 }
 
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Values<'a> = dyn Fn(usize) -> f32 + 'a;
+
+    /// Among numbers spread evenly, in heaps, equal or at the ends of what there is, in lanes filled and not.
+    #[test]
+    fn the_kth_of_few_is_that_of_a_sort() {
+        if !is_x86_feature_detected!("avx512f") || !is_x86_feature_detected!("bmi1") {
+            return;
+        }
+        let hash = |i: usize| ((i as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f32 / (1u32 << 24) as f32;
+        let sets: [([f32; 2], &Values); 6] = [
+            ([0.8, 1.25], &|i| 0.81 + 0.44 * hash(i)),
+            ([80.0, 125.0], &|i| 81.0 + (hash(i) * 8.0).floor() * 5.0),
+            ([0.8, 1.25], &|_| 1.0),
+            ([0.8, 1.25], &|i| if i % 2 == 0 { 0.8f32.next_up() } else { 1.25 }),
+            ([2.6e38, f32::MAX], &|i| if i % 3 == 0 { f32::MAX } else { 3e38 }),
+            ([0.0, 1e-44], &|i| f32::from_bits(1 + i as u32 % 7)),
+        ];
+        for (number, ([low, high], value)) in sets.into_iter().enumerate() {
+            for count in 1..=LANES {
+                let few: Vec<f32> = (0..count).map(value).collect();
+                let mut sorted = few.clone();
+                sorted.sort_unstable_by(f32::total_cmp);
+                for rows in [1, 2, 5] {
+                    // Others below, above and of empty lanes stand between them.
+                    let mut all = vec![[low, f32::INFINITY, f32::INFINITY, low]; rows * LANES / 4].concat();
+                    let step = all.len() / count;
+                    few.iter().enumerate().for_each(|(i, value)| all[i * step] = *value);
+                    let limits = [low, high];
+                    for k in 1..=count {
+                        // SAFETY: the processor has AVX-512F and BMI1, and with the first POPCNT.
+                        let kth = unsafe {
+                            kth_of_few(all.as_chunks::<LANES>().0, limits.map(|limit| _mm512_set1_ps(limit)), k)
+                        };
+                        assert_eq!(kth, sorted[k - 1], "set {number}: {k} of {count} in {rows} rows");
+                    }
+                }
+            }
+        }
+    }
+}

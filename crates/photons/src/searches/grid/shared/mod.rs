@@ -75,7 +75,11 @@ pub(crate) struct Share {
 impl Share {
     /// Whether a photon with this surface word may pass the tests of some query.
     fn wants(&self, surface: u32) -> bool {
-        if self.same_normal { self.query.accepts(surface) } else { self.query.is_shallow(surface) && self.may_face(surface) }
+        if self.same_normal {
+            self.query.accepts(surface)
+        } else {
+            self.query.is_shallow(surface) && self.may_face(surface)
+        }
     }
 
     /// Whether a photon of this normal may be within 60 degrees of some query's.
