@@ -1,50 +1,57 @@
 //! Cloth: weave, stripes and a rug.
 
-use super::noise::{Columns, Noise};
-use super::{draw, draw_rows, floor, fraction, middles, mix, step_between};
+use super::{draw_rows, floor, fraction, middles, mix, noise::Noise, paint, step_between};
 use crate::Bitmap;
 use photinus_geometry::Vec3;
 use std::sync::Arc;
 
 /// Plain weave: threads of one colour over and under threads of another, tiling.
 pub fn weave(number: u32, warp: Vec3, weft: Vec3) -> Arc<Bitmap> {
+    const SIDE: u32 = 256;
+    const THREADS: f32 = 32.0;
     let noise = Noise::new(number);
-    let threads = 32.0;
-    draw(256, 256, |u, v| {
-        let (x, y) = (u * threads, v * threads);
-        let over = (floor(x) as i32 + floor(y) as i32) % 2 == 0;
-        let (thread, across, id) =
-            if over { (warp, fraction(x), floor(x)) } else { (weft, fraction(y), floor(y) + 7.0) };
-        let round = 1.0 - (2.0 * across - 1.0) * (2.0 * across - 1.0);
-        thread * (0.72 + 0.28 * round) * (0.9 + 0.2 * noise.cell(id as i64, over as i64))
+    let shade = |across: f32| 0.72 + 0.28 * (1.0 - (2.0 * across - 1.0) * (2.0 * across - 1.0));
+    let tint = |x: i64, y: i64| 0.9 + 0.2 * noise.cell(x, y);
+    // Every column is on a thread of the warp; where it lies below, the weft is seen.
+    let threads = middles(SIDE).map(|u| (floor(u * THREADS), fraction(u * THREADS)));
+    let columns: Vec<(i32, Vec3)> =
+        threads.map(|(id, across)| (id as i32, warp * shade(across) * tint(id as i64, 1))).collect();
+    draw_rows(SIDE, SIDE, |v, row| {
+        let (id, across) = (floor(v * THREADS), fraction(v * THREADS));
+        let weft = weft * shade(across) * tint(id as i64 + 7, 0);
+        paint(row, columns.iter().map(|&(thread, warp)| if (thread + id as i32) % 2 == 0 { warp } else { weft }));
     })
 }
 
 /// Vertical stripes: a wide and a narrow one on a ground, `repeats` times, tiling.
 pub fn stripes(number: u32, repeats: u32, ground: Vec3, wide: Vec3, narrow: Vec3) -> Arc<Bitmap> {
-    let noise = Noise::new(number);
-    let columns = Columns::new(middles(512), 64, 1);
-    draw_rows(512, 128, |v| {
-        let (wool, columns) = (noise.clouds_at(v, [64, 64], 1), &columns);
-        move |column, u| {
-            let t = fraction(u * repeats as f32);
-            let soft = |low: f32, high: f32| {
-                step_between(low - 0.01, low + 0.01, t) * (1.0 - step_between(high - 0.01, high + 0.01, t))
-            };
-            let color = mix(mix(ground, wide, soft(0.1, 0.45)), narrow, soft(0.68, 0.76));
-            color * (0.95 + 0.1 * wool.at_column(columns, column))
-        }
+    const WIDTH: u32 = 512;
+    let wools = Noise::new(number).sheet(middles(WIDTH), [64, 64], 1);
+    let color = |u: f32| {
+        let t = fraction(u * repeats as f32);
+        let soft = |low: f32, high: f32| {
+            step_between(low - 0.01, low + 0.01, t) * (1.0 - step_between(high - 0.01, high + 0.01, t))
+        };
+        mix(mix(ground, wide, soft(0.1, 0.45)), narrow, soft(0.68, 0.76))
+    };
+    let columns: Vec<Vec3> = middles(WIDTH).map(color).collect();
+    draw_rows(WIDTH, 128, |v, row| {
+        let wool = wools.along(v);
+        paint(row, columns.iter().zip(&wool).map(|(&color, &wool)| color * (0.95 + 0.1 * wool)));
     })
 }
 
 /// A rug with a border, corner pieces and a medallion, the same in all four quarters.
 pub fn rug(number: u32, field: Vec3, border: Vec3, accent: Vec3, light: Vec3) -> Arc<Bitmap> {
+    const WIDTH: u32 = 768;
     let noise = Noise::new(number);
-    let columns = Columns::new(middles(768), 2, 2);
-    draw_rows(768, 512, |v| {
-        let wool = noise.clouds_at(v, [2, 16], 2);
-        let (noise, columns) = (&noise, &columns);
-        move |column, u| {
+    let wools = noise.sheet(middles(WIDTH), [2, 16], 2);
+    draw_rows(WIDTH, 512, |v, row| {
+        // Knots, and bands of wool dyed on different days.
+        let knots: Vec<f32> =
+            middles(WIDTH).map(|u| 0.9 + 0.16 * noise.cell((u * 384.0) as i64, (v * 256.0) as i64)).collect();
+        let wool = wools.along(v);
+        let color = |((u, &knot), &wool): ((f32, &f32), &f32)| {
             // One quarter is drawn; units: the half height is 1, the half width 1.5.
             let (x, y) = (1.5 * (2.0 * u - 1.0).abs(), (2.0 * v - 1.0).abs());
             let rim = (1.5 - x).min(1.0 - y);
@@ -79,9 +86,8 @@ pub fn rug(number: u32, field: Vec3, border: Vec3, accent: Vec3, light: Vec3) ->
                 c = mix(c, accent, 1.0 - step_between(0.2, 0.26, t.abs() + s.abs()));
                 c = mix(c, light, band(0.285, 0.3, rim) + band(0.035, 0.05, rim));
             }
-            // Knots, and bands of wool dyed on different days.
-            let knot = 0.9 + 0.16 * noise.cell((u * 384.0) as i64, (v * 256.0) as i64);
-            c * knot * (0.94 + 0.12 * wool.at_column(columns, column))
-        }
+            c * knot * (0.94 + 0.12 * wool)
+        };
+        paint(row, middles(WIDTH).zip(&knots).zip(&wool).map(color));
     })
 }

@@ -1,6 +1,7 @@
 //! Smooth noise that repeats, so that pictures made from it tile.
 
 use photinus_num::{philox4x32, unit_f32};
+use std::ops::Range;
 
 /// Cells of the lattice along each side; also the largest period.
 const CELLS: usize = 64;
@@ -25,103 +26,87 @@ impl Noise {
 
     /// Octaves of noise at (u, v) in the unit square, starting with these numbers of cells; about 0 to 1, mean 0.5.
     pub fn clouds(&self, u: f32, v: f32, cells: [i32; 2], octaves: usize) -> f32 {
-        self.clouds_at(v, cells, octaves).at(u)
+        let (mut sum, mut total) = (0.0, 0.0);
+        for Octave { periods: [columns, rows], shift, weight } in Octave::several(cells, octaves) {
+            let (x0, x1, tx) = cell_of(u * columns as f32, columns, shift);
+            let (y0, y1, ty) = cell_of(v * rows as f32, rows, shift);
+            // The mask says to the compiler what is true already: no index leaves the lattice.
+            let value = |y: usize, x: usize| self.lattice[(y * CELLS + x) & (CELLS * CELLS - 1)];
+            let below = value(y0, x0) * (1.0 - tx) + value(y0, x1) * tx;
+            let above = value(y1, x0) * (1.0 - tx) + value(y1, x1) * tx;
+            sum += weight * (below * (1.0 - ty) + above * ty);
+            total += weight;
+        }
+        sum / total
     }
 
-    /// The same for many points of one height: what does not depend on u is worked out once.
-    ///
-    /// # Panics
-    /// With more than [`MOST_OCTAVES`].
-    #[inline]
-    pub fn clouds_at(&self, v: f32, cells: [i32; 2], octaves: usize) -> Row<'_> {
-        assert!(octaves <= MOST_OCTAVES, "{octaves} octaves");
-        let mut row =
-            Row { lattice: &self.lattice, octaves: [Octave::default(); MOST_OCTAVES], count: octaves, total: 0.0 };
-        let (mut weight, mut period) = (1.0, cells);
-        for (i, octave) in row.octaves[..octaves].iter_mut().enumerate() {
-            let limited = period.map(|p| p.min(CELLS as i32));
-            let shift = SHIFT * i;
-            let (low, high, t) = cell_of(v * limited[1] as f32, limited[1], shift);
-            *octave = Octave { low: low * CELLS, high: high * CELLS, t, period: limited[0], shift, weight };
-            row.total += weight;
-            weight *= 0.5;
-            period = period.map(|p| p * 2);
-        }
-        row
+    /// The same for the columns of a picture, which lie at these u.
+    pub fn sheet(&self, us: impl Iterator<Item = f32> + Clone, cells: [i32; 2], octaves: usize) -> Sheet {
+        let width = us.clone().count();
+        let layer = |Octave { periods: [columns, rows], shift, weight }| {
+            let places: Vec<_> = us.clone().map(|u| cell_of(u * columns as f32, columns, shift)).collect();
+            let line = |row: i32| {
+                let values: &[f32] = &self.lattice[(row as usize + shift) % CELLS * CELLS..][..CELLS];
+                places.iter().map(|&(x0, x1, tx)| values[x0] * (1.0 - tx) + values[x1] * tx)
+            };
+            Layer { lines: (0..rows).flat_map(line).collect(), rows, weight }
+        };
+        Sheet { width, layers: Octave::several(cells, octaves).map(layer).collect() }
     }
 }
 
 /// How far the lattice is shifted from one octave to the next.
 const SHIFT: usize = 17;
 
-/// Most octaves of a sum of noises.
-const MOST_OCTAVES: usize = 6;
-
-/// One octave at a height: the rows of the lattice below and above it, and the share of the way between them.
-#[derive(Clone, Copy, Default)]
+/// One of several noises that are added: each has twice the cells of the one before and half its weight.
 struct Octave {
-    low: usize,
-    high: usize,
-    t: f32,
-    period: i32,
+    /// Cells across and up before it repeats.
+    periods: [i32; 2],
     shift: usize,
     weight: f32,
 }
 
-/// Octaves of noise along one height of the unit square.
-pub struct Row<'a> {
-    lattice: &'a [f32; CELLS * CELLS],
-    octaves: [Octave; MOST_OCTAVES],
-    count: usize,
-    total: f32,
+impl Octave {
+    fn several(cells: [i32; 2], count: usize) -> impl Iterator<Item = Self> {
+        let limited = move |i: usize| cells.map(|cells| (cells << i).min(CELLS as i32));
+        (0..count).map(move |i| Self { periods: limited(i), shift: SHIFT * i, weight: 1.0 / (1 << i) as f32 })
+    }
 }
 
-impl Row<'_> {
-    /// The value at `u`.
-    #[inline]
-    pub fn at(&self, u: f32) -> f32 {
-        self.sum(self.octaves[..self.count].iter().map(|o| cell_of(u * o.period as f32, o.period, o.shift)))
+/// Octaves of noise for the columns of a picture. A row of the lattice serves many rows of the picture: its values in
+/// the columns are worked out once, and what is left for each height reads memory in order.
+pub struct Sheet {
+    width: usize,
+    layers: Vec<Layer>,
+}
+
+/// One octave of a [`Sheet`].
+struct Layer {
+    /// Values in the columns, a line for each row of the lattice.
+    lines: Vec<f32>,
+    rows: i32,
+    weight: f32,
+}
+
+impl Sheet {
+    /// The noise along height `v`, in all columns.
+    pub fn along(&self, v: f32) -> Vec<f32> {
+        self.part_along(v, 0..self.width)
     }
 
-    /// The value in a column of a picture, for which `columns` were made.
-    #[inline]
-    pub fn at_column(&self, columns: &Columns, column: usize) -> f32 {
-        let cells = &columns.cells[column * columns.octaves..][..columns.octaves];
-        self.sum(cells.iter().map(|&(x0, x1, tx)| (usize::from(x0), usize::from(x1), tx)))
-    }
-
-    /// The sum of the octaves at these cells and shares of the ways between them.
-    #[inline(always)]
-    fn sum(&self, cells: impl Iterator<Item = (usize, usize, f32)>) -> f32 {
-        let mut sum = 0.0;
-        for (o, (x0, x1, tx)) in self.octaves[..self.count].iter().zip(cells) {
-            // The mask says to the compiler what is true already: no index leaves the lattice.
-            let value = |row: usize, x: usize| self.lattice[(row + x) & (CELLS * CELLS - 1)];
-            let below = value(o.low, x0) * (1.0 - tx) + value(o.low, x1) * tx;
-            let above = value(o.high, x0) * (1.0 - tx) + value(o.high, x1) * tx;
-            sum += o.weight * (below * (1.0 - o.t) + above * o.t);
+    /// The noise along height `v`, in these columns.
+    pub fn part_along(&self, v: f32, columns: Range<usize>) -> Vec<f32> {
+        let mut sums = vec![0.0; columns.len()];
+        for Layer { lines, rows, weight } in &self.layers {
+            let (low, high, t) = cell_of(v * *rows as f32, *rows, 0);
+            let line = |row: usize| &lines[row * self.width..][columns.clone()];
+            for ((sum, below), above) in sums.iter_mut().zip(line(low)).zip(line(high)) {
+                *sum += weight * (below * (1.0 - t) + above * t);
+            }
         }
-        sum / self.total
-    }
-}
-
-/// Where the columns of a picture lie in noises, the same at all heights: worked out once for a picture.
-pub struct Columns {
-    octaves: usize,
-    cells: Vec<(u8, u8, f32)>,
-}
-
-impl Columns {
-    /// For columns at these u and noises of so many octaves from so many cells across.
-    pub fn new(us: impl Iterator<Item = f32>, cells: i32, octaves: usize) -> Self {
-        let of_column = |u: f32| {
-            (0..octaves).map(move |i| {
-                let period = (cells << i).min(CELLS as i32);
-                let (x0, x1, tx) = cell_of(u * period as f32, period, SHIFT * i);
-                (x0 as u8, x1 as u8, tx)
-            })
-        };
-        Self { octaves, cells: us.flat_map(of_column).collect() }
+        let total: f32 = self.layers.iter().map(|layer| layer.weight).sum();
+        sums.iter_mut().for_each(|sum| *sum /= total);
+        sums
     }
 }
 

@@ -1,8 +1,9 @@
 //! Paintings for walls, each in a manner of its own.
 
-use super::noise::{Columns, Noise};
-use super::{draw, draw_rows, hex, middles, mix, step_between};
+use super::noise::Noise;
+use super::{draw, draw_rows, hex, middles, mix, paint, step_between};
 use crate::Bitmap;
+use photinus_geometry::Vec3;
 use std::sync::Arc;
 
 /// Ranges of hills under an evening sky, a low sun between them.
@@ -16,24 +17,24 @@ pub fn hills(number: u32) -> Arc<Bitmap> {
     };
     let crests: Vec<[f32; 6]> =
         (0..WIDTH).map(|x| std::array::from_fn(|k| crest(k, x as f32 / WIDTH as f32))).collect();
-    let columns = [Columns::new(middles(WIDTH), 3, 4), Columns::new(middles(WIDTH), 64, 1)];
-    draw_rows(WIDTH, 384, |v| {
-        let (clouds, canvas) = (noise.clouds_at(v, [3, 12], 4), noise.clouds_at(v, [64, 64], 1));
-        let (crests, [cloudy, weave]) = (&crests, &columns);
-        move |column, u| {
-            let bands = v + 0.08 * clouds.at_column(cloudy, column);
-            let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, bands));
-            let (dx, dy) = ((u - 0.64) * 1.33, v - 0.6);
-            let sun = (dx * dx + dy * dy).sqrt();
-            let mut c = mix(hex(0xFFF1C9), sky, step_between(0.055, 0.065, sun));
-            c = mix(hex(0xFFD898), c, step_between(0.0, 0.4, sun).max(0.35));
-            for (&range, &crest) in ranges.iter().zip(&crests[column]) {
-                if v < crest {
-                    c = mix(range * 1.12, range * 0.85, step_between(0.0, 0.16, crest - v));
+    let (cloudy, weave) = (noise.sheet(middles(WIDTH), [3, 12], 4), noise.sheet(middles(WIDTH), [64, 64], 1));
+    draw_rows(WIDTH, 384, |v, row| {
+        let (clouds, canvas) = (cloudy.along(v), weave.along(v));
+        let color = |(((u, &clouds), &canvas), crests): (((f32, &f32), &f32), &[f32; 6])| {
+            let c = match crests.iter().rposition(|&crest| v < crest) {
+                Some(k) => mix(ranges[k] * 1.12, ranges[k] * 0.85, step_between(0.0, 0.16, crests[k] - v)),
+                None => {
+                    let bands = v + 0.08 * clouds;
+                    let sky = mix(hex(0xF6C27A), hex(0x7FA3C4), step_between(0.45, 1.0, bands));
+                    let (dx, dy) = ((u - 0.64) * 1.33, v - 0.6);
+                    let sun = (dx * dx + dy * dy).sqrt();
+                    let c = mix(hex(0xFFF1C9), sky, step_between(0.055, 0.065, sun));
+                    mix(hex(0xFFD898), c, step_between(0.0, 0.4, sun).max(0.35))
                 }
-            }
-            c * (0.94 + 0.12 * canvas.at_column(weave, column))
-        }
+            };
+            c * (0.94 + 0.12 * canvas)
+        };
+        paint(row, middles(WIDTH).zip(&clouds).zip(&canvas).zip(&crests).map(color));
     })
 }
 
@@ -67,27 +68,29 @@ pub fn circles(number: u32) -> Arc<Bitmap> {
         let middle = [0.1 + 0.8 * random(5), 0.08 + 0.84 * random(9)];
         (middle, 0.04 + 0.19 * random(13) * random(14), inks[k % inks.len()], inks[(k + 2) % inks.len()])
     });
-    let columns = [Columns::new(middles(384), 3, 4), Columns::new(middles(384), 64, 1)];
-    draw_rows(384, 512, |v| {
-        let (ground, canvas) = (noise.clouds_at(v, [3, 3], 4), noise.clouds_at(v, [64, 64], 1));
-        let (discs, [plain, weave]) = (&discs, &columns);
-        move |column, u| {
-            let mut c = mix(hex(0xEFE3CB), hex(0xE3CFAE), ground.at_column(plain, column));
-            for (k, &([x, y], radius, ink, heart)) in discs.iter().enumerate() {
-                let (dx, dy) = (u - x, (v - y) * 1.33);
-                let d_sq = dx * dx + dy * dy;
-                if d_sq > (radius + 0.004) * (radius + 0.004) {
-                    continue;
-                }
-                let d = d_sq.sqrt();
+    const WIDTH: u32 = 384;
+    let us: Vec<f32> = middles(WIDTH).collect();
+    let (plain, weave) = (noise.sheet(middles(WIDTH), [3, 3], 4), noise.sheet(middles(WIDTH), [64, 64], 1));
+    draw_rows(WIDTH, 512, |v, row| {
+        let (ground, canvas) = (plain.along(v), weave.along(v));
+        let mut colors: Vec<Vec3> = ground.iter().map(|&t| mix(hex(0xEFE3CB), hex(0xE3CFAE), t)).collect();
+        for (k, &([x, y], radius, ink, heart)) in discs.iter().enumerate() {
+            let (dy, reach) = ((v - y) * 1.33, radius + 0.004);
+            if dy.abs() > reach {
+                continue;
+            }
+            let columns = [x - reach, x + reach].map(|u| us.partition_point(|&middle| middle < u));
+            for (c, u) in colors.iter_mut().zip(&us).take(columns[1]).skip(columns[0]) {
+                let dx = u - x;
+                let d = (dx * dx + dy * dy).sqrt();
                 let disc = 1.0 - step_between(radius - 0.003, radius + 0.003, d);
                 let ring = disc * step_between(0.72 * radius - 0.003, 0.72 * radius + 0.003, d);
                 let cover = if k % 3 == 0 { ring } else { disc };
-                c = mix(c, c * 0.25 + ink * 0.75, cover);
+                *c = mix(*c, *c * 0.25 + ink * 0.75, cover);
                 let core = 1.0 - step_between(0.3 * radius - 0.003, 0.3 * radius + 0.003, d);
-                c = mix(c, heart, core);
+                *c = mix(*c, heart, core);
             }
-            c * (0.95 + 0.1 * canvas.at_column(weave, column))
         }
+        paint(row, colors.iter().zip(&canvas).map(|(&color, &canvas)| color * (0.95 + 0.1 * canvas)));
     })
 }
