@@ -94,14 +94,15 @@ impl BinaryTree {
 
 /// The hittable primitives with their padded bounds, by id.
 fn gather(primitives: &Primitives) -> Vec<BuildPrim> {
-    (0..primitives.len())
-        .into_par_iter()
-        .with_min_len(1024)
-        .filter_map(|id| {
-            let b = padded_bounds(primitives, id)?;
-            Some(BuildPrim { bounds: WideBox { min: b.min.extend(0.0), max: b.max.extend(0.0) }, id: id as u32 })
-        })
-        .collect()
+    const NONE: BuildPrim = BuildPrim { bounds: WideBox::EMPTY, id: u32::MAX };
+    let prim = |id: usize| match padded_bounds(primitives, id) {
+        Some(b) => BuildPrim { bounds: WideBox { min: b.min.extend(0.0), max: b.max.extend(0.0) }, id: id as u32 },
+        None => NONE,
+    };
+    // A list of known length is written in place; most scenes have nothing to be taken out of it.
+    let mut prims: Vec<_> = (0..primitives.len()).into_par_iter().with_min_len(1024).map(prim).collect();
+    prims.retain(|prim| prim.id != NONE.id);
+    prims
 }
 
 /// Builds the tree.

@@ -4,6 +4,7 @@
 
 use super::binary::{BinaryTree, scaled_half_area};
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
+use arrayvec::ArrayVec;
 use photinus_geometry::Primitives;
 
 /// Cost of testing the eight boxes of a node, in units of [`BLOCK_COST`].
@@ -26,9 +27,12 @@ enum Choice {
     Fewer,
 }
 
-/// Least cost with up to i + 1 slots, and how.
+/// Least costs of a subtree with up to i + 1 slots.
+type Costs = [f32; WIDTH - 1];
+
+/// How a subtree is done at these costs.
+#[derive(Clone, Copy)]
 struct Plan {
-    costs: [f32; WIDTH - 1],
     choices: [Choice; WIDTH - 1],
     /// Slots of the first child where the subtree is a node.
     node_split: u8,
@@ -55,6 +59,9 @@ pub struct WideArrays {
     pub levels: u32,
 }
 
+/// The binary nodes that fill the slots of a node, and what becomes of them.
+type Slots = ArrayVec<(usize, Choice), WIDTH>;
+
 struct Collapse<'a> {
     tree: &'a BinaryTree,
     primitives: &'a Primitives,
@@ -65,8 +72,16 @@ struct Collapse<'a> {
 
 /// Collapses `tree`; `None` where an array outgrows its index.
 pub fn collapse(tree: &BinaryTree, primitives: &Primitives, leaves: Leaves) -> Option<WideArrays> {
-    let out =
-        WideArrays { nodes: vec![Node::empty()], blocks: vec![TriangleBlock::empty()], ids: Vec::new(), levels: 1 };
+    // Room for what most trees need: lists that grow are copied.
+    let prims = tree.prims.len();
+    let mut out = WideArrays {
+        nodes: Vec::with_capacity(1 + prims / 5),
+        blocks: Vec::with_capacity(1 + prims / 4),
+        ids: Vec::new(),
+        levels: 1,
+    };
+    out.nodes.push(Node::empty());
+    out.blocks.push(TriangleBlock::empty());
     if tree.nodes.is_empty() {
         return Some(out);
     }
@@ -93,20 +108,23 @@ impl Collapse<'_> {
         }
     }
 
-    /// Costs bottom up: children come after their parents.
+    /// Plans bottom up: children come after their parents. Costs are held until the parent's are known, which reads them
+    /// last in, first out.
     fn plan(&mut self) {
         let n = self.tree.nodes.len();
-        self.plans.resize_with(n, || Plan {
-            costs: [0.0; WIDTH - 1],
-            choices: [Choice::Leaf; WIDTH - 1],
-            node_split: 0,
-        });
+        self.plans.resize(n, Plan { choices: [Choice::Leaf; WIDTH - 1], node_split: 0 });
+        let mut known: Vec<Costs> = Vec::new();
         for index in (0..n).rev() {
-            self.plans[index] = self.plan_of(index);
+            let is_leaf = self.tree.nodes[index].left_count == 0;
+            let children = if is_leaf { None } else { known.pop().zip(known.pop()) };
+            let (costs, plan) = self.plan_of(index, children);
+            known.push(costs);
+            self.plans[index] = plan;
         }
     }
 
-    fn plan_of(&self, index: usize) -> Plan {
+    /// Costs and plan of a subtree, with the costs of its children where it is no leaf.
+    fn plan_of(&self, index: usize, children: Option<(Costs, Costs)>) -> (Costs, Plan) {
         let node = &self.tree.nodes[index];
         let area = scaled_half_area(&node.bounds, self.tree.scale);
         let leaf = match self.leaf_kind(index) {
@@ -114,12 +132,10 @@ impl Collapse<'_> {
             Some(Leaves::Ids) => area * ID_COST * node.count as f32,
             None => f32::INFINITY,
         };
-        let mut plan = Plan { costs: [leaf; WIDTH - 1], choices: [Choice::Fewer; WIDTH - 1], node_split: 0 };
+        let mut costs = [leaf; WIDTH - 1];
+        let mut plan = Plan { choices: [Choice::Fewer; WIDTH - 1], node_split: 0 };
         plan.choices[0] = Choice::Leaf;
-        if node.left_count == 0 {
-            return plan;
-        }
-        let [a, b] = self.tree.children(index).map(|child| &self.plans[child].costs);
+        let Some((a, b)) = children else { return (costs, plan) };
         let best_split = |slots: usize| {
             (1..slots).filter(|k| *k < WIDTH && slots - k < WIDTH).fold((f32::INFINITY, 1), |best, k| {
                 let cost = a[k - 1] + b[slots - k - 1];
@@ -131,24 +147,24 @@ impl Collapse<'_> {
         let as_node = area * NODE_COST + children;
         // The comparison also takes the node where costs overflow and no leaf is possible.
         if leaf == f32::INFINITY || as_node < leaf {
-            plan.costs[0] = as_node;
+            costs[0] = as_node;
             plan.choices[0] = Choice::Node;
         }
         for slots in 2..WIDTH {
             let (cost, k) = best_split(slots);
-            plan.costs[slots - 1] = plan.costs[slots - 2];
-            if cost < plan.costs[slots - 2] {
-                plan.costs[slots - 1] = cost;
+            costs[slots - 1] = costs[slots - 2];
+            if cost < costs[slots - 2] {
+                costs[slots - 1] = cost;
                 plan.choices[slots - 1] = Choice::Split(k as u8);
             }
         }
-        plan
+        (costs, plan)
     }
 
     /// Writes the subtree at `index` as the wide node `place`, which exists.
     fn emit_node(&mut self, index: usize, place: usize, level: u32) {
         self.out.levels = self.out.levels.max(level);
-        let mut slots = Vec::with_capacity(WIDTH);
+        let mut slots = Slots::new();
         let node = &self.tree.nodes[index];
         if node.left_count == 0 || (index == 0 && matches!(self.plans[0].choices[0], Choice::Leaf)) {
             slots.push((index, Choice::Leaf));
@@ -163,8 +179,8 @@ impl Collapse<'_> {
         let interior = slots.iter().filter(|(_, choice)| matches!(choice, Choice::Node)).count();
         self.out.nodes.resize_with(first + interior, Node::empty);
         let mut next = first;
-        let mut inner = Vec::with_capacity(interior);
-        let mut children = Vec::with_capacity(WIDTH);
+        let mut inner = ArrayVec::<_, WIDTH>::new();
+        let mut children = ArrayVec::<_, WIDTH>::new();
         for (child, choice) in slots {
             let reference = if matches!(choice, Choice::Node) {
                 inner.push((child, next));
@@ -182,7 +198,7 @@ impl Collapse<'_> {
     }
 
     /// Appends the binary nodes that fill up to `slots` slots, in tree order.
-    fn slots_of(&self, index: usize, mut slots: usize, out: &mut Vec<(usize, Choice)>) {
+    fn slots_of(&self, index: usize, mut slots: usize, out: &mut Slots) {
         let plan = &self.plans[index];
         while matches!(plan.choices[slots - 1], Choice::Fewer) {
             slots -= 1;
@@ -200,10 +216,10 @@ impl Collapse<'_> {
     fn emit_leaf(&mut self, index: usize) -> Child {
         let node = &self.tree.nodes[index];
         let range = node.first as usize..(node.first + node.count) as usize;
-        let mut ids: Vec<u32> = self.tree.prims[range].iter().map(|p| p.id).collect();
+        let mut ids: ArrayVec<u32, WIDTH> = self.tree.prims[range].iter().map(|p| p.id).collect();
         ids.sort_unstable();
         if self.leaf_kind(index) == Some(Leaves::Ids) {
-            self.out.ids.extend(&ids);
+            self.out.ids.extend_from_slice(&ids);
             return Child::ids(self.out.ids.len() - ids.len(), ids.len());
         }
         let mut block = TriangleBlock::empty();

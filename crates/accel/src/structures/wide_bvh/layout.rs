@@ -102,8 +102,32 @@ impl Node {
             }
             node.children[slot] = *child;
         }
-        node.orders = std::array::from_fn(|octant| order(children, octant));
+        node.orders = std::array::from_fn(|octant| node.order(children.len(), octant));
         node
+    }
+
+    /// The slots from far to near, by the middles of the boxes along the diagonal of the octant: as good as sorting by
+    /// entry for every ray (measured: 1 % more nodes, 2 % more leaves) and free of branches. Unused slots come first, and
+    /// of equals the later one.
+    fn order(&self, count: usize, octant: usize) -> u32 {
+        let middle = |axis: usize, slot: usize| {
+            let sum = self.bounds[2 * axis][slot] + self.bounds[2 * axis + 1][slot];
+            if octant >> axis & 1 == 1 { -sum } else { sum }
+        };
+        // As whole numbers, which `total_cmp` would compare.
+        let depths: [i32; WIDTH] = std::array::from_fn(|slot| {
+            let bits = (middle(0, slot) + middle(1, slot) + middle(2, slot)).to_bits() as i32;
+            if slot < count { bits ^ (bits >> 31 & i32::MAX) } else { i32::MAX }
+        });
+        // A slot's place is the number of those that come before it: eight comparisons at once, where sorting would guess.
+        let mut places = [0; WIDTH];
+        for (slot, depth) in depths.iter().enumerate() {
+            for other in 0..WIDTH {
+                let is_before = if slot > other { *depth >= depths[other] } else { *depth > depths[other] };
+                places[other] += u32::from(is_before);
+            }
+        }
+        places.iter().zip(0..).fold(0, |bits, (place, slot)| bits | slot << (3 * place))
     }
 
     /// How many children the node has.
@@ -116,18 +140,6 @@ impl Node {
         let corner = |o: usize| std::array::from_fn(|axis| self.bounds[2 * axis + o][slot]);
         Aabb { min: <[f32; 3]>::into(corner(0)), max: <[f32; 3]>::into(corner(1)) }
     }
-}
-
-/// The slots from far to near, by the middles of the boxes along the diagonal of the octant: as good as sorting by entry
-/// for every ray (measured: 1 % more nodes, 2 % more leaves) and free of branches. Unused slots come first.
-fn order(children: &[(Aabb, Child)], octant: usize) -> u32 {
-    let depth = |slot: usize| {
-        let middle = children[slot].0.min + children[slot].0.max;
-        (0..3).map(|axis| if octant >> axis & 1 == 1 { -middle[axis] } else { middle[axis] }).sum::<f32>()
-    };
-    let mut slots: [usize; WIDTH] = std::array::from_fn(|i| WIDTH - 1 - i);
-    slots[WIDTH - children.len()..].sort_by(|a, b| depth(*b).total_cmp(&depth(*a)).then(b.cmp(a)));
-    slots.iter().enumerate().fold(0, |bits, (i, slot)| bits | (*slot as u32) << (3 * i))
 }
 
 /// Eight triangles by vertex and axis, with their ids. Five cache lines.
