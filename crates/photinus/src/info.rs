@@ -1,7 +1,7 @@
 //! What is in a scene, counted.
 
 use photinus_geometry::Vec3;
-use photinus_scene::{EnvironmentLight, Geometry, Light, Projection, Scene};
+use photinus_scene::{EnvironmentLight, Light, Projection, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -80,7 +80,7 @@ pub struct BoundsInfo {
 impl SceneInfo {
     /// Describes `scene`.
     pub fn of(scene: &Scene) -> Self {
-        let spheres = scene.shapes.iter().filter(|s| matches!(s.geometry, Geometry::Sphere { .. })).count();
+        let spheres = scene.sphere_count();
         let bounds = scene.bounds();
         let lights_by_kind = LightKinds::of(scene);
         Self {

@@ -1,7 +1,7 @@
 //! A look at the scene before the first pass: which part of it is visible, how wide a pixel is there, and how densely
 //! photons fall. It steers radii and the aim of photons, and never enters an estimate.
 
-use crate::bsdf::{LobeSet, TransportMode};
+use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::camera::{CameraModel, uniform_disk};
 use crate::caustic_plan::{self, CausticPlan};
 use crate::control::{Cancelled, Observer};
@@ -16,9 +16,14 @@ use crate::world::World;
 use photinus_geometry::{Frame, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::{BuildOptions, Photon, Search};
+use rayon::prelude::*;
 
 /// Points looked at along each axis of the picture.
 const GRID: u32 = 128;
+/// Cells whose rays are followed together.
+const PART: u32 = 1024;
+/// Most mirrors and clear surfaces before a visible point, and 1.
+const MIRRORS: usize = 12;
 /// Rays to the sky from each point, and clear surfaces that one may cross.
 const SKY_RAYS: u32 = 3;
 const CLEAR_SURFACES: u32 = 6;
@@ -68,9 +73,23 @@ pub(crate) struct PhotonOutlook {
     pub window: Option<PhotonWindow>,
 }
 
-/// Follows one ray for each cell of a grid over the picture to the first surface that keeps photons.
+/// Follows one ray for each cell of a grid over the picture to the first surface that keeps photons. Points seen directly
+/// come first, then those seen by one mirror, and so on.
 pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4], seed: u64) -> Vec<VisiblePoint> {
-    let mut paths: Vec<(Ray, f32, f32, Sampler)> = (0..GRID * GRID)
+    let parts = (0..GRID * GRID).into_par_iter().step_by(PART as usize);
+    let parts: Vec<_> = parts.map(|first| part_of_visible_points(world, camera, crop, seed, first)).collect();
+    (0..MIRRORS).flat_map(|seen_by| parts.iter().flat_map(move |part| &part[seen_by])).copied().collect()
+}
+
+/// What the rays of [`PART`] cells from `first` find, by the mirrors on the way.
+fn part_of_visible_points(
+    world: &World,
+    camera: &CameraModel,
+    crop: [u32; 4],
+    seed: u64,
+    first: u32,
+) -> [Vec<VisiblePoint>; MIRRORS] {
+    let mut paths: Vec<(Ray, f32, f32, Sampler)> = (first..first + PART)
         .map(|i| {
             let mut sampler = Sampler::new(seed, StreamKind::Pilot, 1 << 40, i);
             let [dx, dy] = sampler.next_2d();
@@ -82,22 +101,21 @@ pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4]
             (start.ray, start.width, start.spread, sampler)
         })
         .collect();
-    let mut points = Vec::new();
     let mut tracer = Tracer::new(world, Twin::OFF);
-    let (mut rays, mut hits) = (Vec::new(), Vec::new());
-    for _ in 0..12 {
+    let (mut rays, mut hits, mut bsdf) = (Vec::new(), Vec::new(), Bsdf::default());
+    std::array::from_fn(|_| {
         rays.clear();
         rays.extend(paths.iter().map(|p| p.0));
         tracer.closest(&rays, &mut hits, &mut Counters::default(), |i| paths[i].3.next_1d());
-        let mut next = Vec::new();
-        for ((ray, width, spread, mut sampler), hit) in paths.into_iter().zip(&hits) {
+        let (mut points, mut next) = (Vec::new(), Vec::new());
+        for ((ray, width, spread, mut sampler), hit) in std::mem::take(&mut paths).into_iter().zip(&hits) {
             if !hit.is_hit() {
                 continue;
             }
             let width = width + spread * hit.t;
             let point = world.surface(&ray, hit, width);
             let wo = -ray.dir;
-            let bsdf = world.materials.resolve(world.shapes[point.shape as usize].material, &point, wo);
+            world.materials.resolve_into(world.shapes[point.shape as usize].material, &point, wo, &mut bsdf);
             if bsdf.has(LobeSet::GATHER) {
                 let side = if point.geometric_normal.dot(wo) >= 0.0 { 1.0 } else { -1.0 };
                 points.push(VisiblePoint {
@@ -115,11 +133,8 @@ pub(crate) fn visible_points(world: &World, camera: &CameraModel, crop: [u32; 4]
             }
         }
         paths = next;
-        if paths.is_empty() {
-            break;
-        }
-    }
-    points
+        points
+    })
 }
 
 /// Which directions of the sky the visible points see, straight or through clear surfaces.
@@ -233,13 +248,13 @@ pub(crate) fn visible_region(world: &World, points: &[VisiblePoint]) -> VisibleR
     }
     let middle = |axis: usize| {
         let mut values: Vec<f32> = points.iter().map(|p| p.position[axis]).collect();
-        values.sort_unstable_by(f32::total_cmp);
-        values[values.len() / 2]
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f32::total_cmp).1
     };
     let center = Vec3::new(middle(0), middle(1), middle(2));
     let mut distances: Vec<f32> = points.iter().map(|p| (p.position - center).length()).collect();
-    distances.sort_unstable_by(f32::total_cmp);
-    let radius = distances[distances.len() * 6 / 10] * 1.1;
+    let most = distances.len() * 6 / 10;
+    let radius = *distances.select_nth_unstable_by(most, f32::total_cmp).1 * 1.1;
     if radius > 0.7 * whole.radius || !(radius > 0.0) { whole } else { VisibleRegion { center, radius } }
 }
 

@@ -29,7 +29,8 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
         super::warn(&scene);
     }
     let (opened, opened_cpu) = (begun.elapsed().as_secs_f64(), photinus::machine::cpu_seconds());
-    let contents = format!("{} triangles, {} spheres", report::count(scene.triangle_count() as u64), spheres(&scene));
+    let contents =
+        format!("{} triangles, {} spheres", report::count(scene.triangle_count() as u64), scene.sphere_count());
     let session = Session::new(scene, options)?;
     let progress = Progress::new(args.quiet, session.options().stop);
     progress.line(&format!("scene {}: {contents}, {opened:.2} s", session.scene_name()));
@@ -190,10 +191,6 @@ fn options(args: &RenderArgs, begun: Instant) -> std::result::Result<RenderOptio
             begun,
         },
     })
-}
-
-fn spheres(scene: &photinus::Scene) -> u64 {
-    photinus::SceneInfo::of(scene).spheres
 }
 
 /// Where the picture goes.

@@ -1,6 +1,6 @@
 //! Pictures with a pyramid of smaller copies, read by nearest pixel, bilinear or trilinear interpolation.
 
-use super::{linear_to_srgb8, srgb8_to_linear};
+use super::{linear_to_srgb8, srgb8_to_linear, unit8_to_linear};
 use arrayvec::ArrayVec;
 use photinus_geometry::{Vec2, Vec4};
 use photinus_scene::{Bitmap, BitmapPixels, TextureFilter, WrapMode};
@@ -29,7 +29,7 @@ fn texel(bitmap: &Bitmap, x: u32, y: u32) -> Vec4 {
 
 #[inline]
 fn from_srgb([r, g, b, a]: [u8; 4]) -> Vec4 {
-    Vec4::new(srgb8_to_linear(r), srgb8_to_linear(g), srgb8_to_linear(b), f32::from(a) / 255.0)
+    Vec4::new(srgb8_to_linear(r), srgb8_to_linear(g), srgb8_to_linear(b), unit8_to_linear(a))
 }
 
 #[inline]
@@ -98,18 +98,16 @@ fn means<T: Copy + Default + Send + Sync>(
 ) -> Vec<T> {
     let (columns, rows) = (box_taps(from_size[0], size[0]), box_taps(from_size[1], size[1]));
     let (from_width, width) = (from_size[0] as usize, size[0] as usize);
+    let is_even = from_size == size.map(|pixels| 2 * pixels);
     let mut data = vec![T::default(); width * size[1] as usize];
     data.par_chunks_exact_mut(width).zip(&rows).with_min_len(ROWS_A_TASK).for_each(|(line, row)| {
         let above = |y: u32| &from[y as usize * from_width..][..from_width];
         // Most pictures halve evenly.
-        if let &[(y0, wy0), (y1, wy1)] = row.as_slice()
-            && from_width == 2 * width
-        {
+        if let (&[(y0, _), (y1, _)], true) = (row.as_slice(), is_even) {
+            let quarter = |pixel: T| read(pixel) * 0.25;
             let pairs = above(y0).as_chunks::<2>().0.iter().zip(above(y1).as_chunks::<2>().0);
-            for ((out, column), (&[a, b], &[c, d])) in line.iter_mut().zip(&columns).zip(pairs) {
-                let (wx0, wx1) = (column[0].1, column[1].1);
-                let upper = read(a) * (wx0 * wy0) + read(b) * (wx1 * wy0);
-                *out = write(upper + read(c) * (wx0 * wy1) + read(d) * (wx1 * wy1));
+            for (out, (&[a, b], &[c, d])) in line.iter_mut().zip(pairs) {
+                *out = write(quarter(a) + quarter(b) + quarter(c) + quarter(d));
             }
             return;
         }

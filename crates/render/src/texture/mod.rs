@@ -6,7 +6,7 @@ mod srgb;
 mod textures;
 
 pub use bitmap::MipMap;
-pub use srgb::{linear_to_srgb8, srgb8_to_linear};
+pub use srgb::{linear_to_srgb8, srgb8_to_linear, unit8_to_linear};
 pub use textures::{TextureLookup, Textures};
 
 /// Rec. 709 luminance of a linear RGB colour.

@@ -39,18 +39,41 @@ pub fn srgb8_to_linear(byte: u8) -> f32 {
     DECODED[byte as usize]
 }
 
-/// Parts of 0..1 that have their own entry point into the decoded values: narrow enough for one of them each at most.
+/// The nearest byte changes to `byte + 1` at this linear value, for each byte but the last: between the values of the two,
+/// found by halving their distance.
+const NEXT_FROM: [f32; 256] = {
+    let mut table = [f32::INFINITY; 256];
+    let mut byte = 0;
+    while byte < 255 {
+        let (below, above) = (DECODED[byte], DECODED[byte + 1]);
+        let (mut nearer_below, mut nearer_above) = (below.to_bits(), above.to_bits());
+        while nearer_above - nearer_below > 1 {
+            let bits = nearer_below + (nearer_above - nearer_below) / 2;
+            let x = f32::from_bits(bits);
+            if x - below < above - x {
+                nearer_below = bits;
+            } else {
+                nearer_above = bits;
+            }
+        }
+        table[byte] = f32::from_bits(nearer_above);
+        byte += 1;
+    }
+    table
+};
+
+/// Parts of 0..1 that have their own entry point into the bytes: narrow enough for one change of byte each at most.
 const PARTS: usize = 4096;
 
-/// How many decoded values lie below the lower end of each part.
-const BELOW: [u8; PARTS] = {
+/// The byte nearest to the lower end of each part.
+const FIRST: [u8; PARTS] = {
     let mut table = [0; PARTS];
-    let (mut part, mut below) = (0, 0);
+    let (mut part, mut byte) = (0, 0);
     while part < PARTS {
-        while DECODED[below] < part as f32 / PARTS as f32 {
-            below += 1;
+        while part as f32 / PARTS as f32 >= NEXT_FROM[byte] {
+            byte += 1;
         }
-        table[part] = below as u8;
+        table[part] = byte as u8;
         part += 1;
     }
     table
@@ -63,11 +86,25 @@ pub fn linear_to_srgb8(linear: f32) -> u8 {
         return 255;
     }
     // A product with a power of two is exact; the conversion takes negative numbers and NaN to 0.
-    let below = usize::from(BELOW[(linear * PARTS as f32) as usize]);
-    // Decoded values lie farther apart than parts are wide. No branches: which of two bytes is nearer is nothing to guess.
-    let above = below + usize::from(DECODED[below] < linear);
-    let before = above.saturating_sub(1);
-    above as u8 - u8::from((above > 0) & (linear - DECODED[before] < DECODED[above] - linear))
+    let first = FIRST[(linear * PARTS as f32) as usize];
+    first + u8::from(linear >= NEXT_FROM[usize::from(first)])
+}
+
+/// The parts of 1 that bytes stand for.
+const PARTS_OF_ONE: [f32; 256] = {
+    let mut table = [0.0; 256];
+    let mut i = 0;
+    while i < 256 {
+        table[i] = i as f32 / 255.0;
+        i += 1;
+    }
+    table
+};
+
+/// The number in 0..1 that a byte stands for.
+#[inline]
+pub fn unit8_to_linear(byte: u8) -> f32 {
+    PARTS_OF_ONE[byte as usize]
 }
 
 #[cfg(test)]

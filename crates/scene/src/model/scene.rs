@@ -54,6 +54,11 @@ impl Scene {
         self.shapes.iter().map(Shape::triangle_count).sum()
     }
 
+    /// Exact spheres.
+    pub fn sphere_count(&self) -> usize {
+        self.shapes.iter().filter(|shape| matches!(shape.geometry, super::Geometry::Sphere { .. })).count()
+    }
+
     /// Bounds of all shapes; empty where there are none.
     pub fn bounds(&self) -> Aabb {
         self.shapes.iter().fold(Aabb::EMPTY, |b, s| {
