@@ -132,7 +132,7 @@ fn flower(stage: &mut Stage, detail: &Detail, which: usize, place: Place, size: 
     let [nu, nv] = detail.petals[which];
     let (name, base, tip) = [("pink-petal", 0xF7E6E2, 0xD9628C), ("white-petal", 0xF2EFC8, 0xF7F4EC)][which];
     let material =
-        stage.printed(name, [1.0, 1.0], Finish::Matte, || bitmap::petal(22 + which as u32, hex(base), hex(tip)));
+        stage.printed(name, [1.0, 1.0], Finish::Matte, move || bitmap::petal(22 + which as u32, hex(base), hex(tip)));
     let mut petals = Part::default();
     for (ring, (count, length, width, lean, rise)) in
         [(8, 1.0, 0.44, 4.0, 0.12), (8, 0.92, 0.42, 26.0, 0.2), (7, 0.8, 0.38, 48.0, 0.2), (5, 0.62, 0.32, 66.0, 0.12)]
@@ -164,8 +164,9 @@ fn flower(stage: &mut Stage, detail: &Detail, which: usize, place: Place, size: 
 /// A koi of this length that swims towards its place's +z.
 fn koi(stage: &mut Stage, detail: &Detail, place: Place, length: f32, color: u32) {
     let name = format!("koi-{color:06x}");
-    let skin = stage
-        .printed(&name, [1.0, length], Finish::Satin(0.2), || bitmap::scales(color & 63, hex(0xF0E4D4), hex(color)));
+    let skin = stage.printed(&name, [1.0, length], Finish::Satin(0.2), move || {
+        bitmap::scales(color & 63, hex(0xF0E4D4), hex(color))
+    });
     let path: Vec<Vec3> = (0..=detail.fish[1])
         .map(|i| {
             let s = i as f32 / detail.fish[1] as f32;

@@ -1,6 +1,6 @@
 //! What things are made of: paints, woods, cloths, metals and glass, made once a scene and found again by name.
 
-use super::{Stage, bitmap, bitmap::hex, rgb};
+use super::{Drawing, Stage, bitmap, bitmap::hex, rgb};
 use crate::{
     Bitmap, ColorInput, FloatInput, Material, MaterialId, MicrofacetModel, Texture, TextureFilter, TextureKind,
     WrapMode,
@@ -50,19 +50,20 @@ impl Stage {
         self.once(name, |stage| finished(chart(color), finish, stage.waxed))
     }
 
-    /// A surface that shows a picture; one repeat covers `tile` of the mesh's texture coordinates.
+    /// A surface that shows a picture, which is drawn while the scene grows; one repeat covers `tile` of the mesh's texture coordinates.
     pub fn printed(
         &mut self,
         name: &str,
         tile: [f32; 2],
         finish: Finish,
-        picture: impl FnOnce() -> Arc<Bitmap>,
+        picture: impl FnOnce() -> Arc<Bitmap> + Send + 'static,
     ) -> MaterialId {
         self.once(name, |stage| {
-            let texture = stage.texture(Texture {
-                name: name.to_owned(),
+            let (name, drawing) = (name.to_owned(), Drawing::begin(picture));
+            let texture = stage.texture(move || Texture {
+                name,
                 kind: TextureKind::Bitmap {
-                    bitmap: picture(),
+                    bitmap: drawing.finished(),
                     filter: TextureFilter::Bilinear,
                     wrap: WrapMode::Repeat,
                     alpha: false,

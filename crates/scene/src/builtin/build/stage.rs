@@ -11,7 +11,8 @@ use photinus_geometry::{Sphere, Vec3};
 pub struct Stage {
     shapes: Vec<Shape>,
     materials: Vec<NamedMaterial>,
-    textures: Vec<Texture>,
+    /// In the order of their ids, as soon as their pictures are there.
+    textures: Vec<Box<dyn FnOnce() -> Texture>>,
     lights: Vec<Light>,
     /// Satin surfaces are waxed.
     pub(super) waxed: bool,
@@ -113,9 +114,9 @@ impl Stage {
         self.lights.push(light);
     }
 
-    /// Adds a texture.
-    pub fn texture(&mut self, texture: Texture) -> TextureId {
-        self.textures.push(texture);
+    /// Adds a texture, which is asked for when the scene is finished.
+    pub fn texture(&mut self, texture: impl FnOnce() -> Texture + 'static) -> TextureId {
+        self.textures.push(Box::new(texture));
         TextureId(self.textures.len() as u32 - 1)
     }
 
@@ -134,7 +135,7 @@ impl Stage {
             name: String::new(),
             shapes: self.shapes,
             materials: self.materials,
-            textures: self.textures,
+            textures: self.textures.into_iter().map(|texture| texture()).collect(),
             lights: self.lights,
             camera,
             film,

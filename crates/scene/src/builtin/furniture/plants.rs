@@ -376,8 +376,8 @@ pub fn daisies(stage: &mut Stage, place: Place, count: usize, height: f32) {
 /// Roses: balls of spiralling petals on stems that lean out of a vase; each rose has 26 petals.
 pub fn roses(stage: &mut Stage, place: Place, count: usize, height: f32, color: u32) {
     let name = format!("rose-{color:06x}");
-    let paint =
-        stage.printed(&name, [1.0, 1.0], Finish::Matte, || bitmap::petal(color & 63, hex(color) * 0.7, hex(color)));
+    let paint = stage
+        .printed(&name, [1.0, 1.0], Finish::Matte, move || bitmap::petal(color & 63, hex(color) * 0.7, hex(color)));
     let green = stage.paint("stem", 0x5E6B3A, Finish::Matte);
     let (mut stems, mut heads) = (Part::default(), Part::default());
     for k in 0..count {

@@ -31,7 +31,7 @@ pub fn painting(
     size: [f32; 2],
     wood: MaterialId,
     name: &str,
-    picture: impl FnOnce() -> Arc<Bitmap>,
+    picture: impl FnOnce() -> Arc<Bitmap> + Send + 'static,
 ) {
     let canvas = stage.printed(name, [1.0, 1.0], Finish::Matte, picture);
     stage.mesh(name, canvas, panel(size[0], size[1]).placed(place.shift(0.0, 0.0, 0.5)));
@@ -109,7 +109,7 @@ pub fn rug(
     place: Place,
     size: [f32; 2],
     name: &str,
-    picture: impl FnOnce() -> Arc<Bitmap>,
+    picture: impl FnOnce() -> Arc<Bitmap> + Send + 'static,
     tassels: usize,
 ) {
     let wool = stage.printed(name, [1.0, 1.0], Finish::Matte, picture);
