@@ -8,8 +8,8 @@ use crate::bounds::padded_bounds;
 use photinus_geometry::{Aabb, Primitives, Vec4};
 use rayon::prelude::*;
 
-/// Subtrees of fewer primitives are built by one thread.
-const PARALLEL_PRIMS: usize = 4096;
+/// Subtrees of fewer primitives are left to one thread.
+pub const PARALLEL_PRIMS: usize = 4096;
 /// Below this depth nodes are halved by count, which takes 30 levels at most: no tree is deeper than 78.
 const MAX_SAH_DEPTH: u32 = 48;
 

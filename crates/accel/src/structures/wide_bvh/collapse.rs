@@ -2,7 +2,7 @@
 //! dynamic programming (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 //! BVHs", HPG 2017, section 3.1).
 
-use super::binary::{BinaryTree, scaled_half_area};
+use super::binary::{BinaryTree, PARALLEL_PRIMS, scaled_half_area};
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
 use arrayvec::ArrayVec;
 use photinus_geometry::Primitives;
@@ -62,10 +62,15 @@ pub struct WideArrays {
 /// The binary nodes that fill the slots of a node, and what becomes of them.
 type Slots = ArrayVec<(usize, Choice), WIDTH>;
 
-struct Collapse<'a> {
+/// What is collapsed.
+struct Binary<'a> {
     tree: &'a BinaryTree,
     primitives: &'a Primitives,
     leaves: Leaves,
+}
+
+struct Collapse<'a> {
+    binary: Binary<'a>,
     plans: Vec<Plan>,
     out: WideArrays,
 }
@@ -85,14 +90,16 @@ pub fn collapse(tree: &BinaryTree, primitives: &Primitives, leaves: Leaves) -> O
     if tree.nodes.is_empty() {
         return Some(out);
     }
-    let mut c = Collapse { tree, primitives, leaves, plans: Vec::with_capacity(tree.nodes.len()), out };
-    c.plan();
+    let binary = Binary { tree, primitives, leaves };
+    let mut plans = vec![Plan { choices: [Choice::Leaf; WIDTH - 1], node_split: 0 }; tree.nodes.len()];
+    binary.plan(0, &mut plans);
+    let mut c = Collapse { binary, plans, out };
     c.emit_node(0, 0, 1);
     let fits = [c.out.nodes.len(), c.out.blocks.len(), c.out.ids.len()].iter().all(|n| *n <= MAX_INDEX);
     fits.then_some(c.out)
 }
 
-impl Collapse<'_> {
+impl Binary<'_> {
     /// Whether the leaf of a subtree would be a block; the alternative is ids. Mixed subtrees are no leaf.
     fn leaf_kind(&self, index: usize) -> Option<Leaves> {
         let node = &self.tree.nodes[index];
@@ -108,19 +115,22 @@ impl Collapse<'_> {
         }
     }
 
-    /// Plans bottom up: children come after their parents. Costs are held until the parent's are known, which reads them
-    /// last in, first out.
-    fn plan(&mut self) {
-        let n = self.tree.nodes.len();
-        self.plans.resize(n, Plan { choices: [Choice::Leaf; WIDTH - 1], node_split: 0 });
-        let mut known: Vec<Costs> = Vec::new();
-        for index in (0..n).rev() {
-            let is_leaf = self.tree.nodes[index].left_count == 0;
-            let children = if is_leaf { None } else { known.pop().zip(known.pop()) };
-            let (costs, plan) = self.plan_of(index, children);
-            known.push(costs);
-            self.plans[index] = plan;
-        }
+    /// Plans the subtree at `index`, whose places are `plans`, bottom up; returns its costs.
+    fn plan(&self, index: usize, plans: &mut [Plan]) -> Costs {
+        let node = &self.tree.nodes[index];
+        let (own, below) = plans.split_at_mut(1);
+        let children = (node.left_count > 0).then(|| {
+            let [a, b] = self.tree.children(index);
+            let (left, right) = below.split_at_mut(b - a);
+            if node.count as usize >= PARALLEL_PRIMS {
+                rayon::join(|| self.plan(a, left), || self.plan(b, right))
+            } else {
+                (self.plan(a, left), self.plan(b, right))
+            }
+        });
+        let (costs, plan) = self.plan_of(index, children);
+        own[0] = plan;
+        costs
     }
 
     /// Costs and plan of a subtree, with the costs of its children where it is no leaf.
@@ -160,16 +170,18 @@ impl Collapse<'_> {
         }
         (costs, plan)
     }
+}
 
+impl Collapse<'_> {
     /// Writes the subtree at `index` as the wide node `place`, which exists.
     fn emit_node(&mut self, index: usize, place: usize, level: u32) {
         self.out.levels = self.out.levels.max(level);
         let mut slots = Slots::new();
-        let node = &self.tree.nodes[index];
+        let node = &self.binary.tree.nodes[index];
         if node.left_count == 0 || (index == 0 && matches!(self.plans[0].choices[0], Choice::Leaf)) {
             slots.push((index, Choice::Leaf));
         } else {
-            let [a, b] = self.tree.children(index);
+            let [a, b] = self.binary.tree.children(index);
             let k = usize::from(self.plans[index].node_split);
             self.slots_of(a, k, &mut slots);
             self.slots_of(b, WIDTH - k, &mut slots);
@@ -189,7 +201,7 @@ impl Collapse<'_> {
             } else {
                 self.emit_leaf(child)
             };
-            children.push((self.tree.nodes[child].bounds, reference));
+            children.push((self.binary.tree.nodes[child].bounds, reference));
         }
         self.out.nodes[place] = Node::new(&children);
         for (child, place) in inner {
@@ -205,7 +217,7 @@ impl Collapse<'_> {
         }
         match plan.choices[slots - 1] {
             Choice::Split(k) => {
-                let [a, b] = self.tree.children(index);
+                let [a, b] = self.binary.tree.children(index);
                 self.slots_of(a, usize::from(k), out);
                 self.slots_of(b, slots - usize::from(k), out);
             }
@@ -214,17 +226,17 @@ impl Collapse<'_> {
     }
 
     fn emit_leaf(&mut self, index: usize) -> Child {
-        let node = &self.tree.nodes[index];
+        let node = &self.binary.tree.nodes[index];
         let range = node.first as usize..(node.first + node.count) as usize;
-        let mut ids: ArrayVec<u32, WIDTH> = self.tree.prims[range].iter().map(|p| p.id).collect();
+        let mut ids: ArrayVec<u32, WIDTH> = self.binary.tree.prims[range].iter().map(|p| p.id).collect();
         ids.sort_unstable();
-        if self.leaf_kind(index) == Some(Leaves::Ids) {
+        if self.binary.leaf_kind(index) == Some(Leaves::Ids) {
             self.out.ids.extend_from_slice(&ids);
             return Child::ids(self.out.ids.len() - ids.len(), ids.len());
         }
         let mut block = TriangleBlock::empty();
         for (lane, &id) in ids.iter().enumerate() {
-            for (v, p) in self.primitives.triangle(id as usize).iter().enumerate() {
+            for (v, p) in self.binary.primitives.triangle(id as usize).iter().enumerate() {
                 for axis in 0..3 {
                     block.vertices[3 * v + axis][lane] = p[axis];
                 }
