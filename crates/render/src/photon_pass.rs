@@ -142,19 +142,22 @@ impl PhotonPass<'_> {
                     Some(result)
                 })
                 .collect();
-            for result in results {
-                let (photons, c) = result.ok_or(Cancelled)?;
+            let results = results.into_iter().collect::<Option<Vec<_>>>().ok_or(Cancelled)?;
+            if first == 0 {
+                // The first group says what the others will add; a hundredth more is seldom needed.
+                let share = 1.0 + f64::from(chunks - last) / f64::from(last) * 1.01;
+                let room = |of: fn(&StoredPhotons) -> usize| {
+                    (results.iter().map(|(photons, _)| of(photons)).sum::<usize>() as f64 * share) as usize
+                };
+                all.global.reserve_exact(room(|photons| photons.global.len()));
+                all.caustic.reserve_exact(room(|photons| photons.caustic.len()));
+            }
+            for (photons, c) in results {
                 all.global.extend_from_slice(&photons.global);
                 all.caustic.extend_from_slice(&photons.caustic);
                 all.origins.extend_from_slice(&photons.origins);
                 all.caustic_origins.extend_from_slice(&photons.caustic_origins);
                 counters += c;
-            }
-            if first == 0 && last < chunks {
-                // The first group says what the others will add; a hundredth more is seldom needed.
-                let share = f64::from(chunks - last) / f64::from(last) * 1.01;
-                all.global.reserve_exact((all.global.len() as f64 * share) as usize);
-                all.caustic.reserve_exact((all.caustic.len() as f64 * share) as usize);
             }
         }
         if self.keep == Keep::Caustic {

@@ -97,6 +97,16 @@ impl Compiled {
         primitives.triangles.reserve_exact(triangles);
         let mut spheres = 0;
         let descriptions: Vec<Shape> = std::mem::take(&mut scene.shapes);
+        let meshes = || {
+            descriptions.iter().filter_map(|shape| match &shape.geometry {
+                Geometry::Mesh(mesh) => Some(mesh),
+                Geometry::Sphere { .. } => None,
+            })
+        };
+        primitives.positions.reserve_exact(meshes().map(|mesh| mesh.positions.len()).sum());
+        normals.reserve_exact(meshes().map(|mesh| mesh.normals.len()).sum());
+        uvs.reserve_exact(meshes().map(|mesh| mesh.uvs.len()).sum());
+        colors.reserve_exact(meshes().map(|mesh| mesh.colors.len()).sum());
         for (index, shape) in descriptions.into_iter().enumerate() {
             let mut record = ShapeRecord {
                 material: shape.material,

@@ -68,33 +68,50 @@ fn box_taps(from: u32, to: u32) -> Vec<Taps> {
 /// The next smaller level: every pixel is the mean of the area that it covers.
 fn halve(from: &Bitmap) -> Bitmap {
     let (width, height) = ((from.width / 2).max(1), (from.height / 2).max(1));
-    let byte = |v: f32| (v * 255.0 + 0.5).clamp(0.0, 255.0) as u8;
     let from_size = [from.width, from.height];
     let size = [width, height];
+    let mean = |[a, b, c, d]: [Vec4; 4]| a * 0.25 + b * 0.25 + c * 0.25 + d * 0.25;
     let pixels = match &from.pixels {
         BitmapPixels::Rgba8 { data, srgb: true } => {
             let encoded = |p: Vec4| [linear_to_srgb8(p.x), linear_to_srgb8(p.y), linear_to_srgb8(p.z), byte(p.w)];
-            BitmapPixels::Rgba8 { data: means(data, from_size, size, from_srgb, encoded), srgb: true }
+            BitmapPixels::Rgba8 { data: means(data, from_size, size, from_srgb, encoded, srgb_of_four), srgb: true }
         }
         BitmapPixels::Rgba8 { data, srgb: false } => {
             let bytes = |p: Vec4| p.to_array().map(byte);
-            BitmapPixels::Rgba8 { data: means(data, from_size, size, from_bytes, bytes), srgb: false }
+            let of_four = |four: [_; 4]| bytes(mean(four.map(from_bytes)));
+            BitmapPixels::Rgba8 { data: means(data, from_size, size, from_bytes, bytes, of_four), srgb: false }
         }
         BitmapPixels::RgbaF32(data) => {
-            BitmapPixels::RgbaF32(means(data, from_size, size, Vec4::from_array, |p| p.to_array()))
+            let of_four = |four: [_; 4]| mean(four.map(Vec4::from_array)).to_array();
+            BitmapPixels::RgbaF32(means(data, from_size, size, Vec4::from_array, |p| p.to_array(), of_four))
         }
     };
     Bitmap { width, height, pixels }
 }
 
+/// The mean of four sRGB pixels: that of [`means`], for less by channels than by vectors of them.
+fn srgb_of_four(pixels: [[u8; 4]; 4]) -> [u8; 4] {
+    let mean = |channel: usize, read: fn(u8) -> f32| {
+        let [a, b, c, d] = pixels.map(|pixel| read(pixel[channel]));
+        0.25 * (a + b + c + d)
+    };
+    let [r, g, b] = [0, 1, 2].map(|channel| linear_to_srgb8(mean(channel, srgb8_to_linear)));
+    [r, g, b, byte(mean(3, unit8_to_linear))]
+}
+
+fn byte(v: f32) -> u8 {
+    (v * 255.0 + 0.5).clamp(0.0, 255.0) as u8
+}
+
 /// The means of the areas of a picture that the pixels of one of another size cover; `read` and `write` know how pixels are
-/// stored.
+/// stored, and `of_four` what the mean of four of them is.
 fn means<T: Copy + Default + Send + Sync>(
     from: &[T],
     from_size: [u32; 2],
     size: [u32; 2],
     read: impl Fn(T) -> Vec4 + Sync,
     write: impl Fn(Vec4) -> T + Sync,
+    of_four: impl Fn([T; 4]) -> T + Sync,
 ) -> Vec<T> {
     let (columns, rows) = (box_taps(from_size[0], size[0]), box_taps(from_size[1], size[1]));
     let (from_width, width) = (from_size[0] as usize, size[0] as usize);
@@ -104,11 +121,8 @@ fn means<T: Copy + Default + Send + Sync>(
         let above = |y: u32| &from[y as usize * from_width..][..from_width];
         // Most pictures halve evenly.
         if let (&[(y0, _), (y1, _)], true) = (row.as_slice(), is_even) {
-            let quarter = |pixel: T| read(pixel) * 0.25;
             let pairs = above(y0).as_chunks::<2>().0.iter().zip(above(y1).as_chunks::<2>().0);
-            for (out, (&[a, b], &[c, d])) in line.iter_mut().zip(pairs) {
-                *out = write(quarter(a) + quarter(b) + quarter(c) + quarter(d));
-            }
+            line.iter_mut().zip(pairs).for_each(|(out, (&[a, b], &[c, d]))| *out = of_four([a, b, c, d]));
             return;
         }
         for (out, column) in line.iter_mut().zip(&columns) {
