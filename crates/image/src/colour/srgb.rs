@@ -21,13 +21,13 @@ fn quantise(encoded: f32) -> u8 {
     (encoded * 255.0 + 0.5) as u8
 }
 
-/// Parts of 0..1 that have their own entry point into the codes: narrow enough for one or two of them each.
+/// Parts of 0..1 that have their own entry point into the codes: narrow enough for the end of one code each.
 const PARTS: usize = 4096;
 
 /// The codes of linear light by table: what [`linear_to_srgb`] gives, rounded to eight bits, without its power.
 pub(crate) struct SrgbCodes {
-    /// For each code but the last, the least light of the next one.
-    ends: [f32; 255],
+    /// For each code the least light of the next one; infinite for the last.
+    ends: [f32; 256],
     /// The code at the lower end of each part.
     first: [u8; PARTS],
 }
@@ -36,8 +36,8 @@ impl SrgbCodes {
     /// Looks for the ends of all codes.
     pub fn new() -> Self {
         let code = |linear: f32| quantise(linear_to_srgb(linear));
-        let mut ends = [0.0; 255];
-        for (k, end) in ends.iter_mut().enumerate() {
+        let mut ends = [f32::INFINITY; 256];
+        for (k, end) in ends[..255].iter_mut().enumerate() {
             // Positive floats are ordered as their bits.
             let (mut below, mut reached) = (0.0f32.to_bits(), 1.0f32.to_bits());
             while reached - below > 1 {
@@ -55,11 +55,9 @@ impl SrgbCodes {
             return 255;
         }
         // A product with a power of two is exact; the conversion takes negative numbers and NaN to 0.
-        let mut code = self.first[(linear * PARTS as f32) as usize];
-        while code < 255 && linear >= self.ends[usize::from(code)] {
-            code += 1;
-        }
-        code
+        let code = self.first[usize::from((linear * PARTS as f32) as u16)];
+        // No branch: which of two codes it is is nothing to guess.
+        code + u8::from(linear >= self.ends[usize::from(code)])
     }
 }
 
@@ -75,7 +73,7 @@ mod tests {
         let around = |x: f32| (x.to_bits().saturating_sub(300)..x.to_bits() + 300).map(f32::from_bits);
         let parts = (0..=PARTS).map(|i| i as f32 / PARTS as f32);
         let between = (0..1_000_000).map(|i| i as f32 / 999_983.0);
-        for x in codes.ends.into_iter().chain(parts).flat_map(around).chain(between) {
+        for x in codes.ends[..255].iter().copied().chain(parts).flat_map(around).chain(between) {
             assert_eq!(codes.nearest(x), formula(x), "{x}");
         }
         for (x, code) in [(f32::NAN, 0), (-1.0, 0), (f32::NEG_INFINITY, 0), (7.0, 255), (f32::INFINITY, 255)] {

@@ -86,7 +86,7 @@ pub fn linear_to_srgb8(linear: f32) -> u8 {
         return 255;
     }
     // A product with a power of two is exact; the conversion takes negative numbers and NaN to 0.
-    let first = FIRST[(linear * PARTS as f32) as usize];
+    let first = FIRST[usize::from((linear * PARTS as f32) as u16)];
     first + u8::from(linear >= NEXT_FROM[usize::from(first)])
 }
 
