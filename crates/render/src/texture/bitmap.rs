@@ -14,16 +14,18 @@ const ROWS_A_TASK: usize = 16;
 #[derive(Clone, Debug)]
 pub struct MipMap {
     levels: Vec<Arc<Bitmap>>,
+    /// The root of the picture's pixels.
+    side: f32,
 }
 
-/// RGBA of pixel (x, y), which must lie inside.
+/// RGBA of the pixels (x, y), which must lie inside.
 #[inline]
-fn texel(bitmap: &Bitmap, x: u32, y: u32) -> Vec4 {
-    let i = y as usize * bitmap.width as usize + x as usize;
+fn texels<const N: usize>(bitmap: &Bitmap, pixels: [(u32, u32); N]) -> [Vec4; N] {
+    let indices = pixels.map(|(x, y)| y as usize * bitmap.width as usize + x as usize);
     match &bitmap.pixels {
-        BitmapPixels::Rgba8 { data, srgb: true } => from_srgb(data[i]),
-        BitmapPixels::Rgba8 { data, srgb: false } => from_bytes(data[i]),
-        BitmapPixels::RgbaF32(data) => Vec4::from_array(data[i]),
+        BitmapPixels::Rgba8 { data, srgb: true } => indices.map(|i| data[i]).map(from_srgb),
+        BitmapPixels::Rgba8 { data, srgb: false } => indices.map(|i| data[i]).map(from_bytes),
+        BitmapPixels::RgbaF32(data) => indices.map(|i| Vec4::from_array(data[i])),
     }
 }
 
@@ -182,7 +184,7 @@ impl MipMap {
     /// Builds the pyramid; a bitmap whose arrays do not fit its size reads as mid-grey.
     pub fn new(bitmap: &Arc<Bitmap>) -> Self {
         if !is_sound(bitmap) {
-            return Self::grey();
+            return Self::of(vec![grey()]);
         }
         let mut levels = vec![Arc::clone(bitmap)];
         while let Some(last) = levels.last()
@@ -191,17 +193,17 @@ impl MipMap {
             let next = halve(last);
             levels.push(Arc::new(next));
         }
-        Self { levels }
+        Self::of(levels)
     }
 
     /// Only the picture itself, for textures that are read by the nearest pixel.
     pub fn without_pyramid(bitmap: &Arc<Bitmap>) -> Self {
-        if is_sound(bitmap) { Self { levels: vec![Arc::clone(bitmap)] } } else { Self::grey() }
+        Self::of(vec![if is_sound(bitmap) { Arc::clone(bitmap) } else { grey() }])
     }
 
-    fn grey() -> Self {
-        let pixels = BitmapPixels::RgbaF32(vec![[0.5, 0.5, 0.5, 1.0]]);
-        Self { levels: vec![Arc::new(Bitmap { width: 1, height: 1, pixels })] }
+    fn of(levels: Vec<Arc<Bitmap>>) -> Self {
+        let side = (levels[0].width as f32 * levels[0].height as f32).sqrt();
+        Self { levels, side }
     }
 
     /// Columns and rows of the picture.
@@ -217,46 +219,56 @@ impl MipMap {
     /// RGBA at `uv` (v = 0: the bottom row), averaged over about `footprint`, the width of the pixel's footprint in
     /// texture coordinates; 0: the full picture.
     pub fn lookup(&self, uv: Vec2, footprint: f32, filter: TextureFilter, wrap: WrapMode) -> Vec4 {
+        let (u, v) = (wrap_unit(uv.x, wrap), 1.0 - wrap_unit(uv.y, wrap));
         if filter == TextureFilter::Nearest {
-            return nearest(&self.levels[0], uv, wrap);
+            return nearest(&self.levels[0], u, v, wrap);
         }
         // The root of the pixels that the footprint covers: pictures of long planks are stretched as their pixels are.
-        let texels = footprint * (self.levels[0].width as f32 * self.levels[0].height as f32).sqrt();
+        let texels = footprint * self.side;
         // The comparison is false for NaN: the base level then.
         if !(texels > 1.0) {
-            return bilinear(&self.levels[0], uv, wrap);
+            return bilinear(&self.levels[0], u, v, wrap);
         }
-        let last = (self.levels.len() - 1) as f32;
-        let level = libm::log2f(texels).min(last);
-        let below = level.floor();
-        let fraction = level - below;
-        let fine = bilinear(&self.levels[below as usize], uv, wrap);
+        let last = self.levels.len() - 1;
+        let level = libm::log2f(texels).min(last as f32);
+        let below = level as usize;
+        let fraction = level - below as f32;
+        let fine = bilinear(&self.levels[below], u, v, wrap);
         if fraction == 0.0 {
             return fine;
         }
-        let coarse = bilinear(&self.levels[(below as usize + 1).min(self.levels.len() - 1)], uv, wrap);
+        let coarse = bilinear(&self.levels[(below + 1).min(last)], u, v, wrap);
         fine + (coarse - fine) * fraction
     }
 }
 
-fn nearest(bitmap: &Bitmap, uv: Vec2, wrap: WrapMode) -> Vec4 {
-    let x = wrap_unit(uv.x, wrap) * bitmap.width as f32;
-    let y = (1.0 - wrap_unit(uv.y, wrap)) * bitmap.height as f32;
+/// What pictures show whose arrays do not fit their size.
+fn grey() -> Arc<Bitmap> {
+    let pixels = BitmapPixels::RgbaF32(vec![[0.5, 0.5, 0.5, 1.0]]);
+    Arc::new(Bitmap { width: 1, height: 1, pixels })
+}
+
+/// At (u, v) in 0..=1, v = 0: the top row.
+fn nearest(bitmap: &Bitmap, u: f32, v: f32, wrap: WrapMode) -> Vec4 {
+    let (x, y) = (u * bitmap.width as f32, v * bitmap.height as f32);
     // v on a row's lower edge belongs to that row: rows are counted from the top, so round down from above.
     let row = y.ceil() as i32 - 1;
     let column = x as i32;
-    texel(bitmap, wrap_index(column, bitmap.width, wrap), wrap_index(row, bitmap.height, wrap))
+    let [pixel] = texels(bitmap, [(wrap_index(column, bitmap.width, wrap), wrap_index(row, bitmap.height, wrap))]);
+    pixel
 }
 
-fn bilinear(bitmap: &Bitmap, uv: Vec2, wrap: WrapMode) -> Vec4 {
-    let x = wrap_unit(uv.x, wrap) * bitmap.width as f32 - 0.5;
-    let y = (1.0 - wrap_unit(uv.y, wrap)) * bitmap.height as f32 - 0.5;
+/// At (u, v) in 0..=1, v = 0: the top row.
+#[inline]
+fn bilinear(bitmap: &Bitmap, u: f32, v: f32, wrap: WrapMode) -> Vec4 {
+    let (x, y) = (u * bitmap.width as f32 - 0.5, v * bitmap.height as f32 - 0.5);
     let (x0, y0) = (floor(x), floor(y));
     let (fx, fy) = (x - x0, y - y0);
-    let columns = [x0 as i32, x0 as i32 + 1].map(|i| wrap_index(i, bitmap.width, wrap));
-    let rows = [y0 as i32, y0 as i32 + 1].map(|i| wrap_index(i, bitmap.height, wrap));
-    let top = texel(bitmap, columns[0], rows[0]) * (1.0 - fx) + texel(bitmap, columns[1], rows[0]) * fx;
-    let bottom = texel(bitmap, columns[0], rows[1]) * (1.0 - fx) + texel(bitmap, columns[1], rows[1]) * fx;
+    let [left, right] = [x0 as i32, x0 as i32 + 1].map(|i| wrap_index(i, bitmap.width, wrap));
+    let [upper, lower] = [y0 as i32, y0 as i32 + 1].map(|i| wrap_index(i, bitmap.height, wrap));
+    let [a, b, c, d] = texels(bitmap, [(left, upper), (right, upper), (left, lower), (right, lower)]);
+    let top = a * (1.0 - fx) + b * fx;
+    let bottom = c * (1.0 - fx) + d * fx;
     top * (1.0 - fy) + bottom * fy
 }
 
@@ -339,12 +351,12 @@ mod tests {
                 for (x, column) in columns.iter().enumerate() {
                     let mut sum = Vec4::ZERO;
                     for (y, wy) in row {
-                        column.iter().for_each(|(x, wx)| sum += texel(&from, *x, *y) * (wx * wy));
+                        column.iter().for_each(|(x, wx)| sum += texels(&from, [(*x, *y)])[0] * (wx * wy));
                     }
                     let byte = (sum.w * 255.0 + 0.5) as u8;
                     let expected =
                         from_srgb([linear_to_srgb8(sum.x), linear_to_srgb8(sum.y), linear_to_srgb8(sum.z), byte]);
-                    assert_eq!(texel(&half, x as u32, y as u32), expected, "{width} x {height}, {x} {y}");
+                    assert_eq!(texels(&half, [(x as u32, y as u32)]), [expected], "{width} x {height}, {x} {y}");
                 }
             }
         }
