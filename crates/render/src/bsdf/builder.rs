@@ -73,13 +73,15 @@ impl<'a> Builder<'a> {
     }
 
     /// Copies the lobes of a recipe.
+    #[inline]
     fn follow(&mut self, recipe: &Recipe, place: Place) {
-        for lobe in &recipe.lobes {
-            let single = LobeSet::DELTA.contains(lobe.set);
-            let frame = if single { self.specular(place).frame } else { place.frame };
-            self.bsdf.lobes.push(Lobe { frame, ..*lobe });
-        }
+        self.bsdf.lobes.extend(recipe.lobes.iter().copied());
         self.bsdf.kinds = recipe.kinds;
+        if recipe.kinds.intersects(LobeSet::DELTA) {
+            let frame = self.specular(place).frame;
+            let single = self.bsdf.lobes.iter_mut().filter(|lobe| LobeSet::DELTA.contains(lobe.set));
+            single.for_each(|lobe| lobe.frame = frame);
+        }
     }
 
     /// Adds the lobes of a nested material.

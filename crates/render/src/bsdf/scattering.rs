@@ -214,6 +214,12 @@ impl Bsdf {
     /// Draws a direction from the lobes in `set`: a lobe in proportion to its estimated albedo, then a direction in
     /// proportion to the lobe as far as possible. None where the surface absorbs or the draw is lost to masking.
     pub fn sample(&self, set: LobeSet, u_lobe: f32, u: [f32; 2], mode: TransportMode) -> Option<BsdfSample> {
+        if let Some(lobe) = self.only(set)
+            && LobeSet::DELTA.contains(lobe.set)
+        {
+            let (wi, weight, eta) = self.delta_child(lobe, mode);
+            return (lobe.importance(set) > 0.0).then_some(BsdfSample { wi, weight, pdf: 1.0, kind: lobe.set, eta });
+        }
         let (lobe, probability, u_lobe) = self.choose(set, u_lobe)?;
         let frame = &self.frames[usize::from(lobe.frame)];
         if LobeSet::DELTA.intersects(lobe.set) {
@@ -246,10 +252,17 @@ impl Bsdf {
     }
 
     /// Whether [`sample`](Self::sample) with this set reads no random number: there is one direction, or none.
+    #[inline]
     pub fn is_certain(&self, set: LobeSet) -> bool {
+        !self.has(set) || self.only(set).is_some_and(|lobe| LobeSet::DELTA.contains(lobe.set))
+    }
+
+    /// The lobe that alone has a part in the set.
+    #[inline]
+    fn only(&self, set: LobeSet) -> Option<&Lobe> {
         let mut lobes = self.lobes().iter().filter(|lobe| lobe.set.intersects(set));
         let first = lobes.next();
-        first.is_none_or(|lobe| LobeSet::DELTA.contains(lobe.set)) && lobes.next().is_none()
+        first.filter(|_| lobes.next().is_none())
     }
 
     /// Chooses a lobe; also its probability and the random number stretched back to 0..1.
