@@ -11,6 +11,7 @@ use crate::recording::NOT_YET;
 use crate::tile::Tile;
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
+use crate::world::{AHEAD, Met};
 use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
@@ -140,10 +141,14 @@ impl EyePass<'_> {
             next.clear();
             timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
                 let mut asked = Asked { next, estimates, pooled: pooled.as_deref_mut() };
-                for (i, (node, hit)) in nodes.iter().zip(&*hits).enumerate() {
-                    let mut drawn = draws.get_mut(i).and_then(Option::take);
-                    let sampler = || drawn.take().unwrap_or_else(|| self.node_sampler(node, place, sample));
-                    self.branch(node, hit, maps.global.radius, sampler, bsdf, tile, &mut asked);
+                let mut draws = draws.iter_mut();
+                for (nodes, hits) in nodes.chunks(AHEAD).zip(hits.chunks(AHEAD)) {
+                    let met = self.world.meet(hits);
+                    for ((node, hit), met) in nodes.iter().zip(hits).zip(met) {
+                        let mut drawn = draws.next().and_then(Option::take);
+                        let sampler = || drawn.take().unwrap_or_else(|| self.node_sampler(node, place, sample));
+                        self.branch(node, (hit, met), maps.global.radius, sampler, bsdf, tile, &mut asked);
+                    }
                 }
             });
             counters.rays.specular += next.len() as u64;
@@ -167,7 +172,7 @@ impl EyePass<'_> {
     fn branch(
         &self,
         node: &Node,
-        hit: &Hit,
+        (hit, met): (&Hit, Met),
         radius: f32,
         mut sampler: impl FnMut() -> Sampler,
         bsdf: &mut Bsdf,
@@ -182,7 +187,7 @@ impl EyePass<'_> {
             return;
         }
         let width = node.width + node.spread * hit.t;
-        let point = self.world.surface(&node.ray, hit, width);
+        let point = self.world.surface_of(met, &node.ray, hit, width);
         let wo = -node.ray.dir;
         let emitted = self.world.emitted(&point, wo);
         if emitted != Vec3::ZERO {

@@ -14,6 +14,7 @@ mod counters;
 mod cut_pixels;
 mod direct;
 mod eye_pass;
+mod facet;
 mod film;
 mod film_filter;
 mod footprint;

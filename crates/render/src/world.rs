@@ -3,30 +3,28 @@
 
 use crate::SurfacePoint;
 use crate::bsdf::{Materials, Reads, SurfaceModel};
+use crate::facet::{Facet, OFFSET, TINY, mixed};
 use crate::footprint::uv_scale;
 use crate::runs::Runs;
+use arrayvec::ArrayVec;
 use photinus_accel::Structure;
 use photinus_geometry::{Aabb, Frame, Hit, Primitives, Ray, Vec2, Vec3};
 use photinus_profile::queries::QuerySink;
 use photinus_scene::{
     Camera, ColorInput, FilmSettings, Geometry, IntegratorHint, Light, MaterialId, NamedMaterial, Scene, Shape,
 };
+use rayon::prelude::*;
 use std::convert::Infallible;
 use std::sync::Arc;
 
 /// Absence of an attribute array in a [`ShapeRecord`].
 const NONE: u32 = u32::MAX;
 
-/// A point on a triangle is off its plane by at most a few units in the last place of its largest coordinates (Ray
-/// Tracing Gems, chapter 6), and so is the test of a ray that starts there: 2^-20 is sixteen such units.
-const OFFSET: f32 = 1.0 / 1_048_576.0;
-/// Keeps the offset above zero at the origin.
-const TINY: f32 = 1e-20;
+/// Facets that are worth a task of their own.
+const FACETS_A_TASK: usize = 1 << 12;
 
-/// How far off a triangle with this corner and these edges rays must start.
-pub(crate) fn offset_on(corner: Vec3, edges: [Vec3; 2]) -> f32 {
-    OFFSET * (corner.abs() + edges[0].abs() + edges[1].abs()).max_element() + TINY
-}
+/// Hits whose facets are asked for together: few enough for the nearest of caches.
+pub(crate) const AHEAD: usize = 32;
 
 /// What a shape looks like to the renderer.
 #[derive(Clone, Debug)]
@@ -50,6 +48,21 @@ pub(crate) struct ShapeRecord {
     axes: [Vec3; 3],
 }
 
+impl ShapeRecord {
+    /// Vertices of one of its triangles, counted from the first of the shape.
+    #[inline]
+    fn vertices(&self, primitives: &Primitives, prim: u32) -> [u32; 3] {
+        primitives.triangles[prim as usize].map(|v| v - self.first_vertex)
+    }
+}
+
+/// What is read first at a hit: the shape, and whether its vertices have normals.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Met {
+    shape: u32,
+    is_smooth: bool,
+}
+
 /// A scene ready to be rendered.
 pub struct World {
     /// Name of the scene.
@@ -71,8 +84,8 @@ pub struct World {
     pub(crate) passes_light: bool,
     pub(crate) shapes: Vec<ShapeRecord>,
     runs: Runs,
-    normals: Vec<Vec3>,
-    uvs: Vec<Vec2>,
+    /// Of all triangles.
+    facets: Vec<Facet>,
     colors: Vec<Vec3>,
 }
 
@@ -156,6 +169,19 @@ impl Compiled {
         &self.primitives
     }
 
+    /// What hits of the triangles read.
+    fn facets(&self) -> Vec<Facet> {
+        let facet = |prim: u32| {
+            let shape = self.runs.shape_of(prim);
+            let record = &self.shapes[shape];
+            let vertices = record.vertices(&self.primitives, prim);
+            let normals = attributes(&self.normals, record.normals, vertices);
+            let uvs = attributes(&self.uvs, record.uvs, vertices);
+            Facet::new(shape as u32, self.primitives.triangle(prim as usize), normals, uvs)
+        };
+        (0..self.primitives.triangle_count() as u32).into_par_iter().with_min_len(FACETS_A_TASK).map(facet).collect()
+    }
+
     /// The finished world, with the structure that answers its rays.
     pub fn with_structure(self, structure: Box<dyn Structure>, model: SurfaceModel) -> World {
         let Ok(world) = self.build_structure(model, |_| Ok::<_, Infallible>(structure));
@@ -172,7 +198,8 @@ impl Compiled {
         build: impl FnOnce(Arc<Primitives>) -> Result<Box<dyn Structure>, E> + Send,
     ) -> Result<World, E> {
         let primitives = Arc::clone(&self.primitives);
-        let (structure, materials) = rayon::join(|| build(primitives), || Materials::new(&self.scene, model));
+        let (structure, (materials, facets)) =
+            rayon::join(|| build(primitives), || rayon::join(|| Materials::new(&self.scene, model), || self.facets()));
         let structure = structure?;
         for shape in &mut self.shapes {
             shape.reads = materials.reads(shape.material) | shape.emission.map_or(Reads::NONE, Reads::of_color);
@@ -192,8 +219,7 @@ impl Compiled {
             recorder: None,
             shapes: self.shapes,
             runs: self.runs,
-            normals: self.normals,
-            uvs: self.uvs,
+            facets,
             colors: self.colors,
         })
     }
@@ -206,6 +232,11 @@ fn append<T>(all: &mut Vec<T>, more: Vec<T>) -> u32 {
     let start = all.len() as u32;
     all.extend(more);
     start
+}
+
+/// Attributes of the vertices of a triangle, of a shape whose attributes begin at `start`.
+fn attributes<T: Copy>(all: &[T], start: u32, vertices: [u32; 3]) -> Option<[T; 3]> {
+    (start != NONE).then(|| vertices.map(|v| all[(start + v) as usize]))
 }
 
 fn passes_light(materials: &[NamedMaterial], id: MaterialId) -> bool {
@@ -262,8 +293,7 @@ impl World {
         self.primitives.positions.len() * 12
             + self.primitives.triangles.len() * 12
             + self.primitives.spheres.len() * 16
-            + self.normals.len() * 12
-            + self.uvs.len() * 8
+            + self.facets.len() * size_of::<Facet>()
             + self.colors.len() * 12
             + self.shapes.len() * size_of::<ShapeRecord>()
             + self.runs.bytes()
@@ -286,160 +316,78 @@ impl World {
 
     /// The geometric normal at a hit, towards the outside: that of [`Self::surface`], for less.
     pub(crate) fn outward_normal(&self, ray: &Ray, hit: &Hit) -> Vec3 {
-        let record = &self.shapes[self.shape_of(hit.prim)];
         let triangles = self.primitives.triangle_count() as u32;
-        if hit.prim >= triangles {
-            let centre = self.primitives.spheres[(hit.prim - triangles) as usize].center;
-            let outward = (ray.at(hit.t) - centre).try_normalize().unwrap_or(Vec3::Z);
-            return if record.flip_normals { -outward } else { outward };
+        if hit.prim < triangles {
+            return self.facets[hit.prim as usize].outward_normal(hit.alpha, hit.beta);
         }
-        let [a, b, c] = self.primitives.triangle(hit.prim as usize);
-        let face = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z);
-        if record.normals == NONE {
-            return face;
-        }
-        let weights = [1.0 - hit.alpha - hit.beta, hit.alpha, hit.beta];
-        let vertices = self.vertices(record, hit.prim as usize);
-        let normal = |i: usize| self.normals[(record.normals + vertices[i]) as usize] * weights[i];
-        if face.dot(normal(0) + normal(1) + normal(2)) < 0.0 { -face } else { face }
+        let centre = self.primitives.spheres[(hit.prim - triangles) as usize].center;
+        let outward = (ray.at(hit.t) - centre).try_normalize().unwrap_or(Vec3::Z);
+        if self.shapes[self.shape_of(hit.prim)].flip_normals { -outward } else { outward }
     }
 
     /// Which side of a triangle's face, by the order of its vertices, is outside all over it: 1, -1, or none where its
     /// vertex normals do not agree.
     pub(crate) fn outer_side(&self, prim: u32) -> Option<f32> {
-        let record = &self.shapes[self.shape_of(prim)];
-        if record.normals == NONE {
-            return Some(1.0);
-        }
-        let [a, b, c] = self.primitives.triangle(prim as usize);
-        let face = (b - a).cross(c - a);
-        let along = self.vertices(record, prim as usize).map(|v| face.dot(self.normals[(record.normals + v) as usize]));
-        let sides = [along.iter().all(|&x| x > 0.0), along.iter().all(|&x| x < 0.0)];
-        match sides {
-            [true, _] => Some(1.0),
-            [_, true] => Some(-1.0),
-            _ => None,
-        }
+        self.facets[prim as usize].outer_side()
+    }
+
+    /// What at most [`AHEAD`] hits met, for [`Self::surface_of`]; anything where nothing was hit. The facets lie anywhere in
+    /// memory: asked for together they come together, where hit after hit waits for its own.
+    pub(crate) fn meet(&self, hits: &[Hit]) -> ArrayVec<Met, AHEAD> {
+        let met = |hit: &Hit| match self.facets.get(hit.prim as usize) {
+            Some(facet) => Met { shape: facet.shape, is_smooth: facet.is_smooth },
+            None if hit.is_hit() => Met { shape: self.shape_of(hit.prim) as u32, is_smooth: false },
+            None => Met::default(),
+        };
+        hits.iter().map(met).collect()
+    }
+
+    fn met(&self, prim: u32) -> Met {
+        let is_smooth = self.facets.get(prim as usize).is_some_and(|facet| facet.is_smooth);
+        Met { shape: self.shape_of(prim) as u32, is_smooth }
     }
 
     /// The surface at a hit. `width` is the width of the pixel's cone there, in scene units; 0 where unknown.
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
-        let shape = self.shape_of(hit.prim);
-        let record = &self.shapes[shape];
-        let triangles = self.primitives.triangle_count() as u32;
-        let mut point = if hit.prim < triangles {
-            self.triangle_surface(record, hit.prim as usize, [hit.alpha, hit.beta], width)
+        self.surface_of(self.met(hit.prim), ray, hit, width)
+    }
+
+    /// The same where the shape is known.
+    #[inline]
+    pub(crate) fn surface_of(&self, met: Met, ray: &Ray, hit: &Hit, width: f32) -> SurfacePoint {
+        if (hit.prim as usize) < self.facets.len() {
+            self.triangle_surface(met, hit.prim, [hit.alpha, hit.beta], width)
         } else {
-            self.sphere_surface(record, (hit.prim - triangles) as usize, ray.at(hit.t), width)
-        };
-        point.shape = shape as u32;
-        point.prim = hit.prim;
-        point
+            self.sphere_surface(met.shape, hit.prim, ray.at(hit.t), width)
+        }
     }
 
     /// The surface of triangle `prim` at barycentrics (alpha, beta); also where a light is sampled on it.
     pub(crate) fn triangle_point(&self, prim: u32, alpha: f32, beta: f32) -> SurfacePoint {
-        let shape = self.shape_of(prim);
-        let record = &self.shapes[shape];
-        let mut point = self.triangle_surface(record, prim as usize, [alpha, beta], 0.0);
-        (point.shape, point.prim) = (shape as u32, prim);
-        point
+        self.triangle_surface(self.met(prim), prim, [alpha, beta], 0.0)
     }
 
     #[inline]
-    fn triangle_surface(&self, record: &ShapeRecord, prim: usize, [alpha, beta]: [f32; 2], width: f32) -> SurfacePoint {
-        let [a, b, c] = self.primitives.triangle(prim);
-        let weights = [1.0 - alpha - beta, alpha, beta];
-        let (e1, e2) = (b - a, c - a);
-        let cross = e1.cross(e2);
-        let face = cross.try_normalize().unwrap_or(Vec3::Z);
-        let normal = if record.normals == NONE {
-            face
-        } else {
-            let n = self.vertices(record, prim).map(|v| self.normals[(record.normals + v) as usize]);
-            (n[0] * weights[0] + n[1] * weights[1] + n[2] * weights[2]).try_normalize().unwrap_or(face)
-        };
-        let mut point = SurfacePoint {
-            position: a + e1 * alpha + e2 * beta,
-            // Vertex normals say which side is out; windings in real files often do not.
-            geometric_normal: if face.dot(normal) < 0.0 { -face } else { face },
-            normal,
-            uv: Vec2::ZERO,
-            dp_du: Vec3::ZERO,
-            dp_dv: Vec3::ZERO,
-            color: Vec3::ONE,
-            uv_footprint: 0.0,
-            offset: offset_on(a, [e1, e2]),
-            shape: 0,
-            prim: 0,
-        };
-        if record.reads != Reads::NONE {
-            self.add_coordinates(record, prim, [alpha, beta], &mut point);
-            if width > 0.0 {
-                point.uv_footprint = width * self.uv_per_length(record, prim, cross.length());
-            }
+    fn triangle_surface(
+        &self,
+        Met { shape, is_smooth }: Met,
+        prim: u32,
+        [alpha, beta]: [f32; 2],
+        width: f32,
+    ) -> SurfacePoint {
+        let record = &self.shapes[shape as usize];
+        let mut point = self.facets[prim as usize].surface(is_smooth, prim, [alpha, beta], record.reads, width);
+        if record.colors != NONE && record.reads != Reads::NONE {
+            let colors = record.vertices(&self.primitives, prim).map(|v| self.colors[(record.colors + v) as usize]);
+            point.color = mixed(colors, alpha, beta);
         }
         point
     }
 
-    /// Vertices of a triangle, counted from the first of its shape.
-    #[inline]
-    fn vertices(&self, record: &ShapeRecord, prim: usize) -> [u32; 3] {
-        self.primitives.triangles[prim].map(|v| v - record.first_vertex)
-    }
-
-    /// Texture coordinates of a point of a triangle, their directions, and its vertex colour.
-    fn add_coordinates(&self, record: &ShapeRecord, prim: usize, [alpha, beta]: [f32; 2], point: &mut SurfacePoint) {
-        let weights = [1.0 - alpha - beta, alpha, beta];
-        let local = self.vertices(record, prim);
-        let edges = || {
-            let [a, b, c] = self.primitives.triangle(prim);
-            (b - a, c - a)
-        };
-        if record.uvs == NONE {
-            point.uv = Vec2::new(alpha, beta);
-            (point.dp_du, point.dp_dv) = edges();
-        } else {
-            let t = local.map(|v| self.uvs[(record.uvs + v) as usize]);
-            point.uv = t[0] * weights[0] + t[1] * weights[1] + t[2] * weights[2];
-            if record.reads.tangents {
-                let (e1, e2) = edges();
-                let (d1, d2) = (t[1] - t[0], t[2] - t[0]);
-                let determinant = d1.x * d2.y - d1.y * d2.x;
-                (point.dp_du, point.dp_dv) = if determinant == 0.0 || !determinant.is_finite() {
-                    let frame = Frame::from_normal(point.geometric_normal);
-                    (frame.s, frame.t)
-                } else {
-                    let inv = 1.0 / determinant;
-                    ((e1 * d2.y - e2 * d1.y) * inv, (e2 * d1.x - e1 * d2.x) * inv)
-                };
-            }
-        }
-        if record.colors != NONE {
-            let c = local.map(|v| self.colors[(record.colors + v) as usize]);
-            point.color = c[0] * weights[0] + c[1] * weights[1] + c[2] * weights[2];
-        }
-    }
-
-    /// Side of the square in texture coordinates that a unit square of a triangle is there, the inverse of
-    /// [`uv_scale`]; `area` is the triangle's, twice.
-    fn uv_per_length(&self, record: &ShapeRecord, prim: usize, area: f32) -> f32 {
-        let uv_area = if record.uvs == NONE {
-            1.0
-        } else {
-            let t = self.vertices(record, prim).map(|v| self.uvs[(record.uvs + v) as usize]);
-            (t[1] - t[0]).perp_dot(t[2] - t[0]).abs()
-        };
-        if uv_area == 0.0 || !uv_area.is_finite() {
-            return 1.0;
-        }
-        let ratio = (uv_area / area).sqrt();
-        if ratio.is_finite() { ratio } else { 0.0 }
-    }
-
-    /// The surface of sphere `index` (counted among spheres) nearest to `near`.
-    fn sphere_surface(&self, record: &ShapeRecord, index: usize, near: Vec3, width: f32) -> SurfacePoint {
-        let sphere = self.primitives.spheres[index];
+    /// The surface of sphere primitive `prim` nearest to `near`; `width` as for [`Self::surface`].
+    fn sphere_surface(&self, shape: u32, prim: u32, near: Vec3, width: f32) -> SurfacePoint {
+        let record = &self.shapes[shape as usize];
+        let sphere = self.primitives.spheres[prim as usize - self.primitives.triangle_count()];
         let outward = (near - sphere.center).try_normalize().unwrap_or(Vec3::Z);
         let normal = if record.flip_normals { -outward } else { outward };
         let mut point = SurfacePoint {
@@ -452,8 +400,8 @@ impl World {
             color: Vec3::ONE,
             uv_footprint: 0.0,
             offset: OFFSET * (sphere.center.abs().max_element() + sphere.radius) + TINY,
-            shape: 0,
-            prim: 0,
+            shape,
+            prim,
         };
         let [x, y, z] = record.axes;
         let local = Vec3::new(x.dot(outward), y.dot(outward), z.dot(outward));
@@ -478,12 +426,7 @@ impl World {
 
     /// The surface of sphere primitive `prim` nearest to `near`.
     pub(crate) fn sphere_point(&self, prim: u32, near: Vec3) -> SurfacePoint {
-        let shape = self.shape_of(prim);
-        let index = prim as usize - self.primitives.triangle_count();
-        let record = &self.shapes[shape];
-        let mut point = self.sphere_surface(record, index, near, 0.0);
-        (point.shape, point.prim) = (shape as u32, prim);
-        point
+        self.sphere_surface(self.shape_of(prim) as u32, prim, near, 0.0)
     }
 
     /// Radiance that leaves the surface at `point` towards `wo` by its own emission.

@@ -75,7 +75,7 @@ impl Panel {
             edges,
             normal: face * side.unwrap_or(1.0),
             area: 0.5 * cross.length(),
-            offset: crate::world::offset_on(a, edges),
+            offset: crate::facet::offset_on(a, edges),
             alike: radiance.filter(|_| side.is_some()),
         }
     }
