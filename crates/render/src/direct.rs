@@ -6,7 +6,7 @@ use crate::control::{Cancelled, Observer};
 use crate::counters::{Counters, timed};
 use crate::eye_pass::EyePass;
 use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates, Maps, Scatter};
-use crate::pool::Pooled;
+use crate::pooled::{Asking, Pooled};
 use crate::recording::NOT_YET;
 use crate::tile::Tile;
 use crate::trace::Tracer;
@@ -47,7 +47,7 @@ struct Asked<'b> {
     next: &'b mut Vec<Node>,
     estimates: &'b mut Estimates,
     /// Where estimates of many tiles are made together.
-    pooled: Option<&'b mut Pooled>,
+    pooled: Option<&'b mut Asking>,
 }
 
 /// Lists that tiles hand on to one another.
@@ -60,6 +60,7 @@ pub(crate) struct Buffers {
     nodes: Vec<Node>,
     next: Vec<Node>,
     bsdf: Bsdf,
+    asking: Asking,
     estimates: Estimates,
     scratch: EstimateScratch,
     found: Vec<Estimated>,
@@ -106,9 +107,9 @@ impl EyePass<'_> {
     pub fn direct_sample(
         &self,
         maps: &Maps,
-        Buffers { rays, hits, draws, nodes, next, bsdf, estimates, scratch, found }: &mut Buffers,
+        Buffers { rays, hits, draws, nodes, next, bsdf, asking, estimates, scratch, found }: &mut Buffers,
         sample: u32,
-        Followed { tile, tracer, twin, counters, mut pooled }: Followed,
+        Followed { tile, tracer, twin, counters, pooled }: Followed,
     ) {
         let place = tile.place;
         scratch.begin_batch_of(tracer);
@@ -125,9 +126,7 @@ impl EyePass<'_> {
         }));
         counters.rays.camera += nodes.len() as u64;
         estimates.clear();
-        if let Some(pooled) = &mut pooled {
-            pooled.clear();
-        }
+        asking.clear();
         while !nodes.is_empty() {
             rays.clear();
             rays.extend(nodes.iter().map(|n| n.ray));
@@ -140,7 +139,7 @@ impl EyePass<'_> {
             nodes.iter_mut().enumerate().for_each(|(i, node)| node.record = tracer.record_of(i));
             next.clear();
             timed(self.profile_every > 0, &mut counters.spent.surfaces, || {
-                let mut asked = Asked { next, estimates, pooled: pooled.as_deref_mut() };
+                let mut asked = Asked { next, estimates, pooled: pooled.is_some().then_some(&mut *asking) };
                 let mut draws = draws.iter_mut();
                 for (nodes, hits) in nodes.chunks(AHEAD).zip(hits.chunks(AHEAD)) {
                     let met = self.world.meet(hits);
@@ -155,14 +154,14 @@ impl EyePass<'_> {
             std::mem::swap(nodes, next);
         }
         if let Some(pooled) = pooled {
-            pooled.locate(&maps.global);
+            asking.file(&maps.global, pooled);
         }
         maps.global.estimate(&estimates.list, estimates, maps.knn, twin, scratch, found, counters);
         // Those that might be pooled come last, as where they are: the picture is the same to the last bit.
         for last in [false, true] {
             let made = estimates.list.iter().zip(&*found);
             for (e, found) in made.filter(|(e, _)| matches!(e.scatter, Scatter::Constant(_)) == last) {
-                tile.estimated(e.path, found);
+                tile.estimated(e.path, found.radiance, found.density);
             }
         }
         scratch.hand_over(tracer);

@@ -25,6 +25,7 @@ mod photon_pass;
 mod photon_window;
 mod pilot;
 mod pool;
+mod pooled;
 mod recording;
 mod renderer;
 mod runs;

@@ -102,6 +102,15 @@ pub(crate) struct Estimated {
     pub radius: f32,
 }
 
+/// The light of photons, whatever the surface makes of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Found {
+    /// Divided by how it is scattered: W per scene unit squared.
+    pub irradiance: Vec3,
+    /// Photons per area.
+    pub density: f32,
+}
+
 /// Buffers of a batch of estimates.
 #[derive(Default)]
 pub(crate) struct EstimateScratch {
@@ -136,6 +145,12 @@ impl EstimateScratch {
 }
 
 impl Map {
+    /// The query of all photons within the radius, whatever their depth.
+    #[inline]
+    pub fn query(&self, position: Vec3, normal: Vec3) -> GatherQuery {
+        GatherQuery { position, radius: self.radius, normal, max_depth: 127 }
+    }
+
     /// Sums the `k` nearest photons of each query; they come in the order of their neighbourhoods.
     pub fn nearest(
         &self,
@@ -272,13 +287,14 @@ impl Map {
     /// Radiance by the sum of weighted flux within a radius.
     fn estimated(&self, e: &Estimate, flux: Vec3, count: u32, radius: f32) -> Estimated {
         let Scatter::Constant(factor) = e.scatter else { return Estimated::default() };
-        self.constant(e.throughput * factor, flux, count, radius)
+        let Found { irradiance, density } = self.found(flux, count, radius);
+        Estimated { radiance: e.throughput * factor * irradiance, density, radius }
     }
 
-    /// The same, `factor` being throughput times scattering.
-    pub fn constant(&self, factor: Vec3, flux: Vec3, count: u32, radius: f32) -> Estimated {
+    /// The light that so much weighted flux within a radius is.
+    pub fn found(&self, flux: Vec3, count: u32, radius: f32) -> Found {
         let irradiance = flux / self.kernel.area(radius.max(LEAST_RADIUS));
-        Estimated { radiance: factor * irradiance, density: density(count, radius), radius }
+        Found { irradiance, density: density(count, radius) }
     }
 
     /// The map's radius, or the pixel's where that is wider (of each of its places, where there are several), up to

@@ -3,8 +3,9 @@
 
 use crate::control::Observer;
 use crate::counters::Counters;
-use crate::maps::{Estimated, Map};
-use crate::sort::sorted_places;
+use crate::maps::{Found, Map};
+use crate::pooled::{Pooled, Run, Spot};
+use crate::sort::Sorter;
 use crate::tile::Spare;
 use crate::twin::Twin;
 use photinus_geometry::Vec3;
@@ -14,58 +15,34 @@ use rayon::prelude::*;
 /// Estimates that are worth a task of their own.
 const TASK: usize = 1 << 13;
 
-/// Estimates of a tile over the nearest photons, on surfaces that scatter alike from all directions.
-#[derive(Default)]
-pub(crate) struct Pooled {
-    pub queries: Vec<GatherQuery>,
-    /// What each is worth, and the neighbourhoods.
-    uses: Vec<Use>,
-    keys: Vec<u64>,
-}
-
-#[derive(Clone, Copy)]
-struct Use {
-    /// Throughput times scattering, 1/sr.
-    factor: Vec3,
-    /// Pixel within the tile.
-    pixel: u32,
-}
-
-impl Pooled {
-    /// Forgets all.
-    pub fn clear(&mut self) {
-        self.queries.clear();
-        self.uses.clear();
-    }
-
-    /// One more for a pixel of the tile; `factor` is throughput times scattering, 1/sr.
-    pub fn push(&mut self, query: GatherQuery, factor: Vec3, pixel: u32) {
-        self.queries.push(query);
-        self.uses.push(Use { factor, pixel });
-    }
-
-    /// Says where they lie, once all are there.
-    pub fn locate(&mut self, map: &Map) {
-        map.search.neighbourhoods(&self.queries, &mut self.keys);
-    }
-}
-
 /// What was found for the estimates of several tiles. It keeps its memory from one set of tiles to the next.
 #[derive(Default)]
 pub(crate) struct Pool {
     order: Order,
-    /// In the order of the queries' neighbourhoods.
-    answers: Vec<GatheredNearest>,
-    /// Of the estimates of all lists, one list after the other: where among the answers.
-    places: Vec<u32>,
-    /// Where the places of each list begin.
+    /// One list after the other, in the order of their spots.
+    found: Vec<Found>,
+    /// Where the answers of each list begin.
     begins: Vec<usize>,
-    spare: Spare<Vec<GatherQuery>>,
+    spare: Spare<Scratch>,
+}
+
+/// What a task works on.
+#[derive(Default)]
+struct Scratch {
+    queries: Vec<GatherQuery>,
+    nearest: Vec<GatheredNearest>,
+}
+
+/// Estimates that are made at a time.
+struct Task<'t> {
+    pieces: &'t [Piece],
+    /// Of each list those that the pieces are about.
+    spots: Vec<&'t [Spot]>,
+    found: Vec<&'t mut [Found]>,
 }
 
 impl Pool {
-    /// Answers the estimates of lists that are located, and counts them; nothing where it is stopped. Task `i` is
-    /// counted as its twin
+    /// Makes the estimates of lists, and counts them; nothing where it is stopped. Task `i` is counted as its twin
     /// `twin(i)` says; how many there were.
     pub fn answer(
         &mut self,
@@ -76,89 +53,117 @@ impl Pool {
         counters: &mut Counters,
         observer: &dyn Observer,
     ) -> Option<u32> {
-        self.order.sort(lists);
-        let order = &self.order;
-        let count = order.places.len();
-        self.answers.clear();
-        self.answers.resize(count, GatheredNearest::default());
+        self.order.sort(lists.iter().map(|list| &list.runs[..]));
+        self.begins.clear();
+        self.begins.extend(lists.iter().scan(0, |end, list| Some(std::mem::replace(end, *end + list.spots.len()))));
+        self.found.resize(lists.iter().map(|list| list.spots.len()).sum(), Found::default());
         let spare = &self.spare;
-        let answer = |(task, (places, answers)): (usize, (&[u64], &mut [GatheredNearest]))| {
+        let answer = |(number, task): (usize, Task)| {
             if observer.cancelled() {
                 return None;
             }
-            let query = |place: &u64| {
-                let (list, index) = order.element(*place);
-                lists[list].queries[index]
-            };
             let mut counters = Counters::default();
-            spare.with(|queries| {
-                queries.clear();
-                queries.extend(places.iter().map(query));
-                map.nearest(queries, k, &mut twin(task as u32), answers, &mut counters);
-            });
+            spare.with(|scratch| task.answer(map, k, scratch, &mut twin(number as u32), &mut counters));
             Some(counters)
         };
-        let tasks = order.places.par_chunks(TASK).zip(self.answers.par_chunks_mut(TASK)).enumerate();
-        let counted: Option<Vec<Counters>> = tasks.with_max_len(1).map(answer).collect();
-        self.begins.clear();
-        self.begins.extend(lists.iter().scan(0, |end, list| Some(std::mem::replace(end, *end + list.queries.len()))));
-        self.places.resize(count, 0);
-        for (number, place) in (0..).zip(&order.places) {
-            let (list, index) = order.element(*place);
-            self.places[self.begins[list] + index] = number;
-        }
+        let tasks = tasks(&self.order.sorted, lists, &mut self.found);
+        let counted: Option<Vec<Counters>> = tasks.into_par_iter().enumerate().with_max_len(1).map(answer).collect();
         let counted = counted?;
         let tasks = counted.len() as u32;
         counted.into_iter().for_each(|c| *counters += c);
         Some(tasks)
     }
 
-    /// What was found for the estimates of list `number`, and their pixels.
-    pub fn found<'p>(
-        &'p self,
-        map: &'p Map,
-        k: u32,
-        number: usize,
-        list: &'p Pooled,
-    ) -> impl Iterator<Item = (u32, Estimated)> + 'p {
-        let places = &self.places[self.begins[number]..];
-        list.uses.iter().zip(&list.queries).zip(places).map(move |((Use { factor, pixel }, query), &place)| {
-            let found = &self.answers[place as usize];
-            (*pixel, map.constant(*factor, found.flux, found.count, found.radius(query, k)))
-        })
+    /// What was found for the estimates of list `number`, with their factors and pixels, in the order in which they were
+    /// asked for.
+    pub fn found<'p>(&'p self, number: usize, list: &'p Pooled) -> impl Iterator<Item = (u32, Vec3, Found)> + 'p {
+        let found = &self.found[self.begins[number]..][..list.spots.len()];
+        list.uses.iter().map(|u| (u.pixel, u.factor, found[u.spot as usize]))
     }
 }
 
-/// Elements of lists, sorted by their neighbourhoods.
+/// Cuts the work into tasks.
+fn tasks<'t>(mut pieces: &'t [Piece], lists: &[&'t Pooled], mut found: &'t mut [Found]) -> Vec<Task<'t>> {
+    let mut left = Vec::new();
+    for list in lists {
+        left.push((&list.spots[..], found.split_off_mut(..list.spots.len()).unwrap_or_default()));
+    }
+    let mut tasks = Vec::new();
+    while !pieces.is_empty() {
+        let (mut number, mut count, mut counts) = (0, 0, vec![0; lists.len()]);
+        while count < TASK
+            && let Some(piece) = pieces.get(number)
+        {
+            counts[piece.list as usize] += piece.count as usize;
+            count += piece.count as usize;
+            number += 1;
+        }
+        let mut task =
+            Task { pieces: pieces.split_off(..number).unwrap_or_default(), spots: Vec::new(), found: Vec::new() };
+        for ((spots, found), count) in left.iter_mut().zip(counts) {
+            task.spots.push(spots.split_off(..count).unwrap_or_default());
+            task.found.push(found.split_off_mut(..count).unwrap_or_default());
+        }
+        tasks.push(task);
+    }
+    tasks
+}
+
+impl Task<'_> {
+    fn answer(
+        mut self,
+        map: &Map,
+        k: u32,
+        Scratch { queries, nearest }: &mut Scratch,
+        twin: &mut Twin,
+        counters: &mut Counters,
+    ) {
+        queries.clear();
+        for piece in self.pieces {
+            let spots = self.spots[piece.list as usize].split_off(..piece.count as usize).unwrap_or_default();
+            queries.extend(spots.iter().map(|&Spot { position, normal }| map.query(position, normal)));
+        }
+        nearest.clear();
+        nearest.resize(queries.len(), GatheredNearest::default());
+        map.nearest(queries, k, twin, nearest, counters);
+        let mut answers = queries.iter().zip(&*nearest);
+        for piece in self.pieces {
+            let found = self.found[piece.list as usize].split_off_mut(..piece.count as usize).unwrap_or_default();
+            for (found, (query, nearest)) in found.iter_mut().zip(&mut answers) {
+                *found = map.found(nearest.flux, nearest.count, nearest.radius(query, k));
+            }
+        }
+    }
+}
+
+/// Runs of lists, sorted by their neighbourhoods.
 #[derive(Default)]
 struct Order {
-    /// The list above the index in it, which has `index_bits` bits.
-    places: Vec<u64>,
-    index_bits: u32,
-    scratch: Vec<u64>,
+    sorted: Vec<Piece>,
+    keys: Vec<u64>,
+    unsorted: Vec<Piece>,
+    sorter: Sorter,
+}
+
+/// A run: the next so many estimates of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Piece {
+    list: u32,
+    count: u32,
 }
 
 impl Order {
-    fn sort(&mut self, lists: &[&Pooled]) {
-        let bits = |count: usize| usize::BITS - count.leading_zeros();
-        let index_bits = bits(lists.iter().map(|list| list.keys.len()).max().unwrap_or(0));
-        let pairs = || {
-            (0u64..).zip(lists).flat_map(move |(list, pooled)| {
-                pooled.keys.iter().zip(0..).map(move |(key, index)| (*key, list << index_bits | index))
-            })
-        };
-        self.index_bits = index_bits;
-        if !sorted_places(pairs(), index_bits + bits(lists.len()), &mut self.places, &mut self.scratch) {
-            let mut pairs: Vec<(u64, u64)> = pairs().collect();
-            pairs.sort_by_key(|pair| pair.0);
-            self.places.clear();
-            self.places.extend(pairs.into_iter().map(|pair| pair.1));
+    fn sort<'l>(&mut self, lists: impl Iterator<Item = &'l [Run]>) {
+        let Self { sorted, keys, unsorted, sorter } = self;
+        keys.clear();
+        unsorted.clear();
+        for (list, runs) in (0..).zip(lists) {
+            keys.extend(runs.iter().map(|run| run.key));
+            unsorted.extend(runs.iter().map(|run| Piece { list, count: run.count }));
         }
-    }
-
-    /// The list and the index of an element.
-    fn element(&self, place: u64) -> (usize, usize) {
-        ((place >> self.index_bits) as usize, (place & ((1 << self.index_bits) - 1)) as usize)
+        sorter.sort(keys);
+        sorted.clear();
+        sorted.extend(sorter.places().map(|place| unsorted[place]));
     }
 }
 
@@ -167,32 +172,60 @@ mod tests {
     use super::*;
     use photinus_num::{Sampler, StreamKind};
 
-    /// Lists of very different lengths, keys of few and of all bits, against a stable sort of them one after the other.
+    /// Lists of very different lengths, against a stable sort of them one after the other.
     #[test]
-    fn elements_of_lists_are_sorted_by_their_keys() {
+    fn runs_of_lists_are_sorted_by_their_keys() {
         let mut order = Order::default();
         for (case, mask) in [0, 1, 0xFFF, 0xFFFF_F000, u64::MAX].into_iter().enumerate() {
             for lengths in [&[][..], &[0], &[3], &[1, 0, 5000, 2], &[1 << 14, 700, 1 << 10]] {
-                let lists: Vec<Pooled> = (0u64..)
-                    .zip(lengths)
-                    .map(|(list, length)| {
-                        let key = |i| {
-                            let mut s = Sampler::new(case as u64, StreamKind::Test, list << 32 | i, 0);
-                            let [high, low] = s.next_2d().map(|u| u64::from(u.to_bits().wrapping_mul(0x9E37_79B9)));
-                            (high << 32 | low) & mask
-                        };
-                        Pooled { keys: (0..*length).map(key).collect(), ..Pooled::default() }
-                    })
-                    .collect();
-                order.sort(&lists.iter().collect::<Vec<_>>());
-                let mut expected: Vec<(u64, (usize, usize))> = Vec::new();
-                for (number, list) in lists.iter().enumerate() {
-                    expected.extend(list.keys.iter().enumerate().map(|(index, key)| (*key, (number, index))));
-                }
-                expected.sort_by_key(|e| e.0);
-                let found: Vec<_> = order.places.iter().map(|place| order.element(*place)).collect();
-                assert_eq!(found, expected.iter().map(|e| e.1).collect::<Vec<_>>(), "{lengths:?}, mask {mask:x}");
+                let list = |(list, length): (u64, &u64)| -> Vec<Run> {
+                    let run = |i| {
+                        let mut s = Sampler::new(case as u64, StreamKind::Test, list << 32 | i, 0);
+                        let [high, low] = s.next_2d().map(|u| u64::from(u.to_bits().wrapping_mul(0x9E37_79B9)));
+                        Run { key: (high << 32 | low) & mask, count: i as u32 + 1 }
+                    };
+                    (0..*length).map(run).collect()
+                };
+                let lists: Vec<Vec<Run>> = (0..).zip(lengths).map(list).collect();
+                order.sort(lists.iter().map(|runs| &runs[..]));
+                let all = (0..).zip(&lists).flat_map(|(list, runs)| runs.iter().map(move |run| (list, *run)));
+                let mut expected: Vec<(u32, Run)> = all.collect();
+                expected.sort_by_key(|(_, run)| run.key);
+                let expected: Vec<Piece> =
+                    expected.into_iter().map(|(list, run)| Piece { list, count: run.count }).collect();
+                assert_eq!(order.sorted, expected, "{lengths:?}, mask {mask:x}");
             }
         }
+    }
+
+    /// Tasks take what is next of each list, and all of it.
+    #[test]
+    fn tasks_cover_all_lists() {
+        let run = |key| Run { key, count: 1000 };
+        let lists: Vec<Pooled> = [30, 0, 1, 17]
+            .map(|runs| Pooled {
+                spots: vec![Spot { position: Vec3::ZERO, normal: Vec3::ZERO }; runs * 1000],
+                runs: (0..runs as u64).map(|i| run(i * 7 % 5 + i / 5 * 5)).collect(),
+                uses: Vec::new(),
+            })
+            .into();
+        let mut order = Order::default();
+        order.sort(lists.iter().map(|list| &list.runs[..]));
+        let lists: Vec<&Pooled> = lists.iter().collect();
+        let mut found = vec![Found::default(); 48_000];
+        let tasks = tasks(&order.sorted, &lists, &mut found);
+        assert_eq!(tasks.len(), 6);
+        let mut taken = [0; 4];
+        for task in &tasks {
+            for list in 0..4 {
+                let count: u32 = task.pieces.iter().filter(|p| p.list == list).map(|p| p.count).sum();
+                let list = list as usize;
+                assert_eq!((task.spots[list].len(), task.found[list].len()), (count as usize, count as usize));
+                let expected = lists[list].spots[taken[list]..].as_ptr();
+                assert!(count == 0 || std::ptr::eq(task.spots[list].as_ptr(), expected));
+                taken[list] += count as usize;
+            }
+        }
+        assert_eq!(taken, [30_000, 0, 1000, 17_000]);
     }
 }

@@ -161,9 +161,9 @@ impl Tile<'_> {
     }
 
     /// An estimate from a map that holds all light.
-    pub fn estimated(&mut self, pixel: u32, found: &Estimated) {
-        self.add(pixel, Part::Indirect, found.radiance);
-        self.add_scalar(pixel, Aov::PhotonDensity, found.density);
+    pub fn estimated(&mut self, pixel: u32, radiance: Vec3, density: f32) {
+        self.add(pixel, Part::Indirect, radiance);
+        self.add_scalar(pixel, Aov::PhotonDensity, density);
     }
 
     /// Adds to a picture of one channel, where it is wanted.

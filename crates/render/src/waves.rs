@@ -6,7 +6,8 @@ use crate::counters::Counters;
 use crate::direct::{Buffers, Followed, TILE};
 use crate::eye_pass::EyePass;
 use crate::maps::Maps;
-use crate::pool::{Pool, Pooled};
+use crate::pool::Pool;
+use crate::pooled::Pooled;
 use crate::tile::{Made, Spare, Tile, Tiles};
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
@@ -140,7 +141,7 @@ impl EyePass<'_> {
             if let Some(done) = done {
                 done.finish(&mut made, &mut lists);
             }
-            waves.asked_for(wave.tiles.iter().map(|tile| tile.pooled.queries.len() as u64).sum());
+            waves.asked_for(wave.tiles.iter().map(|tile| tile.pooled.spots.len() as u64).sum());
             while wave.samples + 1 < self.spp && self.make(&mut wave, &shared, &mut maker) {
                 self.follow_wave(&mut wave, &shared);
             }
@@ -209,8 +210,8 @@ impl EyePass<'_> {
         let Some(done) = pool.answer(&maps.global, *k, &lists, twin, counters, *observer) else { return false };
         *tasks += done;
         wave.tiles.par_iter_mut().enumerate().for_each(|(number, Started { tile, pooled, .. })| {
-            for (pixel, found) in pool.found(&maps.global, *k, number, pooled) {
-                tile.estimated(pixel, &found);
+            for (pixel, factor, found) in pool.found(number, pooled) {
+                tile.estimated(pixel, factor * found.irradiance, found.density);
             }
         });
         true
