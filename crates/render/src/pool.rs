@@ -4,11 +4,10 @@
 use crate::control::Observer;
 use crate::counters::Counters;
 use crate::maps::{Found, Map};
-use crate::pooled::{Pooled, Run, Spot};
+use crate::pooled::{Pooled, Run, Spot, Use};
 use crate::sort::Sorter;
 use crate::tile::Spare;
 use crate::twin::Twin;
-use photinus_geometry::Vec3;
 use photinus_photons::{GatherQuery, GatheredNearest};
 use rayon::prelude::*;
 
@@ -24,6 +23,9 @@ pub(crate) struct Pool {
     /// Where the answers of each list begin.
     begins: Vec<usize>,
     spare: Spare<Scratch>,
+    /// Of a list in the order in which its estimates were asked for: what is in a thread's caches may be written here and
+    /// there.
+    in_turn: Spare<Vec<Found>>,
 }
 
 /// What a task works on.
@@ -74,11 +76,14 @@ impl Pool {
         Some(tasks)
     }
 
-    /// What was found for the estimates of list `number`, with their factors and pixels, in the order in which they were
-    /// asked for.
-    pub fn found<'p>(&'p self, number: usize, list: &'p Pooled) -> impl Iterator<Item = (u32, Vec3, Found)> + 'p {
+    /// Calls `visit(use, found)` for each estimate of list `number` in the order in which they were asked for.
+    pub fn found(&self, number: usize, list: &Pooled, mut visit: impl FnMut(&Use, &Found)) {
         let found = &self.found[self.begins[number]..][..list.spots.len()];
-        list.uses.iter().map(|u| (u.pixel, u.factor, found[u.spot as usize]))
+        self.in_turn.with(|in_turn| {
+            in_turn.resize(found.len(), Found::default());
+            list.turns.iter().zip(found).for_each(|(turn, found)| in_turn[*turn as usize] = *found);
+            list.uses.iter().zip(&*in_turn).for_each(|(u, found)| visit(u, found));
+        });
     }
 }
 
@@ -170,6 +175,7 @@ impl Order {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use photinus_geometry::Vec3;
     use photinus_num::{Sampler, StreamKind};
 
     /// Lists of very different lengths, against a stable sort of them one after the other.
@@ -206,7 +212,7 @@ mod tests {
             .map(|runs| Pooled {
                 spots: vec![Spot { position: Vec3::ZERO, normal: Vec3::ZERO }; runs * 1000],
                 runs: (0..runs as u64).map(|i| run(i * 7 % 5 + i / 5 * 5)).collect(),
-                uses: Vec::new(),
+                ..Pooled::default()
             })
             .into();
         let mut order = Order::default();

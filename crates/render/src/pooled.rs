@@ -28,6 +28,8 @@ pub(crate) struct Pooled {
     pub spots: Vec<Spot>,
     /// The same, cut where neighbourhoods end.
     pub runs: Vec<Run>,
+    /// When each was asked for.
+    pub turns: Vec<u32>,
     /// In the order in which they were asked for.
     pub uses: Vec<Use>,
 }
@@ -54,8 +56,6 @@ pub(crate) struct Use {
     pub factor: Vec3,
     /// Pixel within the tile.
     pub pixel: u32,
-    /// Number of its spot.
-    pub spot: u32,
 }
 
 impl Asking {
@@ -69,7 +69,7 @@ impl Asking {
     /// scattering, 1/sr.
     pub fn push(&mut self, query: GatherQuery, factor: Vec3, pixel: u32) {
         self.queries.push(query);
-        self.uses.push(Use { factor, pixel, spot: 0 });
+        self.uses.push(Use { factor, pixel });
     }
 
     /// Copies all into `pooled`, once they are there.
@@ -80,17 +80,19 @@ impl Asking {
         let places = sorter.places();
         let spot = |GatherQuery { position, normal, .. }| Spot { position, normal };
         refill(&mut pooled.spots, places.clone().map(|place| spot(queries[place])));
-        (0..).zip(places.clone()).for_each(|(number, place)| uses[place].spot = number);
+        refill(&mut pooled.turns, places.clone().map(|place| place as u32));
         refill(&mut pooled.uses, uses.iter().copied());
         cut(places.map(|place| keys[place] >> CLOSE_BITS), &mut pooled.runs);
     }
 }
 
-/// Makes a list what `from` says, in memory of its size where it has too little.
+/// Makes a list what `from` says. What it held is not copied where it grows, and what it has more than that is memory
+/// that nobody has touched until a tile asks for more.
 fn refill<T>(list: &mut Vec<T>, from: impl ExactSizeIterator<Item = T>) {
     list.clear();
     if list.capacity() < from.len() {
-        *list = Vec::with_capacity(from.len());
+        *list = Vec::new();
+        list.reserve_exact(from.len().next_power_of_two());
     }
     list.extend(from);
 }

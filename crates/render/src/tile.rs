@@ -232,6 +232,15 @@ pub(crate) struct Made {
     samples: u32,
 }
 
+/// Tiles that have been put into a film.
+#[derive(Default)]
+pub(crate) struct Together {
+    tiles: u32,
+    /// Those that were not stopped.
+    whole: u32,
+    counters: Counters,
+}
+
 /// Buffers that tasks hand on to one another.
 #[derive(Default)]
 pub(crate) struct Spare<B>(Mutex<Vec<B>>);
@@ -313,33 +322,33 @@ impl<'a> Tiles<'a> {
                 Some(made)
             })
             .collect();
-        self.put_together(made, film)
+        let mut together = Together::default();
+        made.into_iter().for_each(|made| self.put(made, film, &mut together));
+        self.finish(together, film)
     }
 
-    /// Puts what the tiles made, in their order and as far as there are any, into `film`; counters are those of all tiles.
-    pub fn put_together(&self, made: Vec<Option<Made>>, film: &mut [f32]) -> Result<Counters, Cancelled> {
-        let [_, _, width, _] = self.window;
-        let mut counters = Counters::default();
-        let channels = self.layout.channels();
-        let mut complete = made.len() as u32 == self.count();
-        for (index, made) in made.into_iter().enumerate() {
-            let Some(Made { pixels, counters: c, samples }) = made else {
-                complete = false;
-                continue;
-            };
-            complete &= samples == self.samples;
-            counters += c;
-            let [x0, y0, w, h] = self.place(index as u32);
-            if let Some(filter) = self.shared {
-                self.add_sums(film, [x0, y0, w, h], &pixels, filter.reach);
-                continue;
-            }
-            let row = w as usize * channels;
-            for y in 0..h as usize {
-                let to = ((y0 as usize + y) * width as usize + x0 as usize) * channels;
-                film[to..to + row].copy_from_slice(&pixels[y * row..(y + 1) * row]);
-            }
+    /// Puts what the next tile made, as far as there is anything, into `film`.
+    pub fn put(&self, made: Option<Made>, film: &mut [f32], together: &mut Together) {
+        let [x0, y0, w, h] = self.place(together.tiles);
+        together.tiles += 1;
+        let Some(Made { pixels, counters, samples }) = made else { return };
+        together.whole += u32::from(samples == self.samples);
+        together.counters += counters;
+        if let Some(filter) = self.shared {
+            self.add_sums(film, [x0, y0, w, h], &pixels, filter.reach);
+            return;
         }
+        let ([_, _, width, _], channels) = (self.window, self.layout.channels());
+        let row = w as usize * channels;
+        for y in 0..h as usize {
+            let to = ((y0 as usize + y) * width as usize + x0 as usize) * channels;
+            film[to..to + row].copy_from_slice(&pixels[y * row..(y + 1) * row]);
+        }
+    }
+
+    /// Ends a film that all tiles are in, as far as there are any; counters are those of all tiles.
+    pub fn finish(&self, together: Together, film: &mut [f32]) -> Result<Counters, Cancelled> {
+        let channels = self.layout.channels();
         if let (Some(offset), Some(weight)) = (self.layout.offset(Aov::Variance), self.layout.weight()) {
             for pixel in film.chunks_exact_mut(channels) {
                 let luminance = 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
@@ -348,7 +357,7 @@ impl<'a> Tiles<'a> {
                 pixel[offset] = luminance * (luminance / pixel[weight].max(f32::MIN_POSITIVE));
             }
         }
-        if complete { Ok(counters) } else { Err(Cancelled) }
+        if together.whole == self.count() { Ok(together.counters) } else { Err(Cancelled) }
     }
 
     /// Adds the sums of a tile and its border to the film, as far as they lie on it.

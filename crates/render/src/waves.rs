@@ -7,8 +7,8 @@ use crate::direct::{Buffers, Followed, TILE};
 use crate::eye_pass::EyePass;
 use crate::maps::Maps;
 use crate::pool::Pool;
-use crate::pooled::Pooled;
-use crate::tile::{Made, Spare, Tile, Tiles};
+use crate::pooled::{Pooled, Use};
+use crate::tile::{Spare, Tile, Tiles, Together};
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
 use rayon::prelude::*;
@@ -122,7 +122,7 @@ impl EyePass<'_> {
         let samples = u64::from(tiles.count()) * u64::from(self.spp);
         let shared = Shared { maps, k, observer, spare: Spare::default(), followed: AtomicU64::new(0), samples };
         let mut waves = Waves::new(tiles.count());
-        let (mut made, mut maker) = (Vec::new(), Maker::default());
+        let (mut together, mut maker) = (Together::default(), Maker::default());
         // Lists that waves hand on to one another.
         let mut lists = Vec::new();
         // The wave that has been followed, but for its last estimates.
@@ -139,7 +139,7 @@ impl EyePass<'_> {
             };
             let (done, ()) = rayon::join(estimates, || self.follow_wave(&mut wave, &shared));
             if let Some(done) = done {
-                done.finish(&mut made, &mut lists);
+                done.finish(&tiles, film, &mut together, &mut lists);
             }
             waves.asked_for(wave.tiles.iter().map(|tile| tile.pooled.spots.len() as u64).sum());
             while wave.samples + 1 < self.spp && self.make(&mut wave, &shared, &mut maker) {
@@ -149,9 +149,9 @@ impl EyePass<'_> {
         }
         if let Some(mut wave) = behind {
             self.make(&mut wave, &shared, &mut maker);
-            wave.finish(&mut made, &mut lists);
+            wave.finish(&tiles, film, &mut together, &mut lists);
         }
-        let counters = tiles.put_together(made, film)?;
+        let counters = tiles.finish(together, film)?;
         maker.counters += counters;
         Ok(maker.counters)
     }
@@ -210,20 +210,20 @@ impl EyePass<'_> {
         let Some(done) = pool.answer(&maps.global, *k, &lists, twin, counters, *observer) else { return false };
         *tasks += done;
         wave.tiles.par_iter_mut().enumerate().for_each(|(number, Started { tile, pooled, .. })| {
-            for (pixel, factor, found) in pool.found(number, pooled) {
-                tile.estimated(pixel, factor * found.irradiance, found.density);
-            }
+            pool.found(number, pooled, |Use { factor, pixel }, found| {
+                tile.estimated(*pixel, *factor * found.irradiance, found.density);
+            });
         });
         true
     }
 }
 
 impl Wave<'_> {
-    /// Ends its tiles, and hands on their lists.
-    fn finish(self, made: &mut Vec<Option<Made>>, lists: &mut Vec<Pooled>) {
-        for started in self.tiles {
-            lists.push(started.pooled);
-            made.push(started.tile.made(started.counters, self.samples));
+    /// Ends its tiles, the next of the film, and hands on their lists.
+    fn finish(self, tiles: &Tiles, film: &mut [f32], together: &mut Together, lists: &mut Vec<Pooled>) {
+        for Started { tile, counters, pooled, .. } in self.tiles {
+            lists.push(pooled);
+            tiles.put(tile.made(counters, self.samples), film, together);
         }
     }
 }
