@@ -26,9 +26,9 @@ const PHOTON_LIST_BYTES: u64 = 24;
 /// Bytes of a photon in a finished map: itself and its place there.
 const PHOTON_BYTES: u64 = 28;
 
-/// Bytes of an estimate of a wave: its query, its use and its neighbourhood in lists that grow by doubling, those of
-/// one of the next wave, what it is sorted by, its place and its answer. Measured at 206 in `room-1`.
-const ESTIMATE_BYTES: u64 = 200;
+/// Bytes of an estimate of a wave: its place, its turn and its use in lists with room for those of fuller tiles, those of
+/// one of the next wave, what it is sorted by and its answer. Measured at 187 in `room-1`.
+const ESTIMATE_BYTES: u64 = 185;
 
 /// What the lists of single batches of photons leave behind with each thread for the next pass, at most.
 const LEFT_BYTES: u64 = 2 << 20;
