@@ -48,6 +48,28 @@ pub(crate) fn unpack(word: u32) -> Vec3 {
     placed_mantissas(word) * raw_scale(word) * PLACED_UNITS
 }
 
+/// The octave of the scale of a word; zero for black only.
+#[inline]
+pub(crate) fn octave(word: u32) -> u32 {
+    word >> 25
+}
+
+/// The channels of a word in units of an octave at or below its own; exact where they are below 2^32.
+#[inline]
+pub(crate) fn whole(word: u32, least: u32) -> [u32; 3] {
+    let halves = 2 + (word >> 24 & 1);
+    // Black has no octave, and no bits that could be moved.
+    let octaves = octave(word).wrapping_sub(least);
+    [0, 8, 16].map(|place| ((word >> place & 0xFF) * halves).wrapping_shl(octaves))
+}
+
+/// The unit of [`whole`] numbers, W; anything where `least` is no octave.
+#[inline]
+pub(crate) fn whole_unit(least: u32) -> f64 {
+    // Half of 2^(octave - 85).
+    f64::from_bits(u64::from(least.min(127) + 1023 - 86) << 52)
+}
+
 /// Packs a flux whose channels lie in `0..=MAX_FLUX`. `dither` holds a random word a channel.
 #[inline]
 pub(crate) fn pack(flux: Vec3, dither: [u32; 3]) -> u32 {
@@ -118,6 +140,18 @@ mod tests {
         assert_eq!(pack(Vec3::ZERO, [u32::MAX; 3]), 0);
         assert_eq!(unpack(pack(Vec3::splat(MAX_FLUX), [u32::MAX; 3])), Vec3::splat(MAX_FLUX));
         assert!(unpack(pack(Vec3::splat(1e-40), [5; 3])).max_element() < 1e-20);
+    }
+
+    #[test]
+    fn whole_numbers_are_the_flux() {
+        for word in [0u32, 0x8001_02FF, 0x81FF_FFFF, 0x7FFF_00AB, 0x0300_0001, 0xFF00_0100] {
+            let own = octave(word);
+            for least in own.saturating_sub(20).max(1)..=own {
+                let flux = whole(word, least).map(|w| (f64::from(w) * whole_unit(least)) as f32);
+                assert_eq!(Vec3::from_array(flux), unpack(word), "{word:x} in units of octave {least}");
+            }
+        }
+        assert_eq!(whole(0, 77), [0; 3]);
     }
 
     /// Equal fluxes: the mean of n packed ones has a standard error of at most half a quantum over sqrt(n).

@@ -4,6 +4,7 @@
 
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
+use super::even;
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
 use super::kth::{kth_least, pad};
 use super::shared;
@@ -87,7 +88,7 @@ fn gather_selected(blocks: &[Block], selected: &[Selected], query: &PreparedQuer
     // SAFETY: as above.
     unsafe {
         match kernel_index(query.kernel.kernel) {
-            CONSTANT => selected_kernel::<CONSTANT>(blocks, selected, query),
+            CONSTANT => even_selected(blocks, selected, query.r2),
             CONE => selected_kernel::<CONE>(blocks, selected, query),
             EPANECHNIKOV => selected_kernel::<EPANECHNIKOV>(blocks, selected, query),
             _ => selected_kernel::<GAUSSIAN>(blocks, selected, query),
@@ -329,6 +330,11 @@ fn lane_masks(lanes: u32, half: usize) -> __m256 {
     let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     let lanes = _mm256_set1_epi32((lanes >> (half * HALF)) as i32);
     _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(lanes, bits), bits))
+}
+
+#[target_feature(enable = "avx2,popcnt,bmi1")]
+fn even_selected(blocks: &[Block], selected: &[Selected], r2: f32) -> Gathered {
+    even::gather_selected(blocks, selected, r2)
 }
 
 #[target_feature(enable = "avx2,popcnt,bmi1")]

@@ -4,6 +4,7 @@
 
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::Candidates;
+use super::even;
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
 use super::kth::{kth_least, pad};
 use super::shared;
@@ -84,7 +85,7 @@ fn gather_selected(blocks: &[Block], selected: &[Selected], query: &PreparedQuer
     // SAFETY: as above.
     unsafe {
         match kernel_index(query.kernel.kernel) {
-            CONSTANT => selected_kernel::<CONSTANT>(blocks, selected, query),
+            CONSTANT => even_selected(blocks, selected, query.r2),
             CONE => selected_kernel::<CONE>(blocks, selected, query),
             EPANECHNIKOV => selected_kernel::<EPANECHNIKOV>(blocks, selected, query),
             _ => selected_kernel::<GAUSSIAN>(blocks, selected, query),
@@ -339,6 +340,11 @@ fn gather_kernel<const KERNEL: u8>(
         sums.add(block, found, d2);
     }
     sums.gathered()
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn even_selected(blocks: &[Block], selected: &[Selected], r2: f32) -> Gathered {
+    even::gather_selected(blocks, selected, r2)
 }
 
 #[target_feature(enable = "avx512f,popcnt,bmi1")]

@@ -14,6 +14,7 @@ mod blocks;
 mod build;
 mod candidates;
 mod cells;
+mod even;
 mod group;
 mod kernels;
 mod kth;

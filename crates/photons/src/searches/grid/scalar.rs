@@ -2,12 +2,13 @@
 
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
+use super::even;
 use super::kernels::{NormalMemo, Selected, VectorKernels};
 use super::kth::{kth_least, pad};
 use super::shared;
-use crate::Gathered;
 use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
 use crate::inclusion::PreparedQuery;
+use crate::{Gathered, Kernel};
 use photinus_geometry::Vec3;
 use std::ops::Range;
 
@@ -51,6 +52,9 @@ fn gather(blocks: &[Block], hits: &[u32], query: &PreparedQuery, _: &mut NormalM
 }
 
 fn gather_selected(blocks: &[Block], selected: &[Selected], query: &PreparedQuery) -> Gathered {
+    if query.kernel.kernel == Kernel::Constant {
+        return even::gather_selected(blocks, selected, query.r2);
+    }
     let mut sums = Sums::default();
     for selected in selected {
         for (lane, d2) in selected.found().filter(|(_, d2)| *d2 <= query.r2) {

@@ -87,12 +87,14 @@ fn results_depend_on_neither_batch_nor_threads() {
             assert_eq!(bits(&out), [*expected], "seed {SEED}: alone on '{}': {query:?}", set.name);
         }
         let crowds = crowds(set, 200);
-        let mut nearest = vec![GatheredNearest::default(); crowds.len()];
-        grid.gather_nearest(&crowds, 30, Kernel::Epanechnikov, &mut nearest);
-        for (query, expected) in crowds.iter().zip(&nearest) {
-            let mut out = [GatheredNearest::default()];
-            grid.gather_nearest(std::slice::from_ref(query), 30, Kernel::Epanechnikov, &mut out);
-            assert_eq!(&out[0], expected, "seed {SEED}: 30 nearest, alone on '{}': {query:?}", set.name);
+        for kernel in [Kernel::Constant, Kernel::Epanechnikov] {
+            let mut nearest = vec![GatheredNearest::default(); crowds.len()];
+            grid.gather_nearest(&crowds, 30, kernel, &mut nearest);
+            for (query, expected) in crowds.iter().zip(&nearest) {
+                let mut out = [GatheredNearest::default()];
+                grid.gather_nearest(std::slice::from_ref(query), 30, kernel, &mut out);
+                assert_eq!(&out[0], expected, "seed {SEED}: 30 nearest, alone on '{}': {query:?}", set.name);
+            }
         }
         queries.reverse();
         let mut reversed = gather(2, &queries);
@@ -177,13 +179,66 @@ fn heaps_are_summed_as_one_by_one() {
                 max_depth: 9,
             };
             let queries: Vec<GatherQuery> = (0..40).map(near).collect();
+            for kernel in [Kernel::Constant, Kernel::Epanechnikov] {
+                let mut together = vec![GatheredNearest::default(); queries.len()];
+                grid.gather_nearest(&queries, k, kernel, &mut together);
+                for (query, together) in queries.iter().zip(&together) {
+                    let mut alone = [GatheredNearest::default()];
+                    grid.gather_nearest(std::slice::from_ref(query), k, kernel, &mut alone);
+                    assert_eq!(*together, alone[0], "{}, {k} nearest, {query:?}", kernels.name);
+                    assert!(together.count >= 15_000, "{query:?}: {}", together.count);
+                }
+            }
+        }
+    }
+}
+
+/// Photons of the same weight whose fluxes span few octaves and many, black ones among them: sums are those in f64 of each
+/// by itself, to the last bit where those are exact, in any company.
+#[test]
+fn photons_that_weigh_the_same_are_summed_exactly() {
+    for (spread, black) in [(0, 1), (1, 3), (6, 7), (14, 5), (30, 4), (60, usize::MAX)] {
+        let photons: Vec<Photon> = support::photons(40 + spread, 3000, |s| {
+            let [u, v] = s.next_2d();
+            (Vec3::new(u, v, 0.0), Vec3::Z)
+        })
+        .into_iter()
+        .enumerate()
+        .map(|(i, photon)| {
+            let octave = (i as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
+            let scale = libm::exp2f(-((octave % (spread + 1)) as f32));
+            let flux = if i % black == 0 { Vec3::ZERO } else { Vec3::new(0.7, 1.0, 0.001) * scale };
+            Photon::new(photon.position(), flux, Vec3::Z, Vec3::Z, 1, false).expect("a photon")
+        })
+        .collect();
+        let at = |i: usize| GatherQuery {
+            position: Vec3::new(0.45 + 0.0005 * (i % 30) as f32, 0.4 + 0.0005 * (i / 30) as f32, 0.0),
+            radius: 0.2,
+            // Now all alike, now not.
+            normal: if i < 450 { Vec3::Z } else { Vec3::new(0.001 * i as f32, 0.0, 1.0).normalize() },
+            max_depth: 9,
+        };
+        let queries: Vec<GatherQuery> = (0..900).map(at).collect();
+        for &kernels in kernels::available() {
+            let grid = Grid::with_kernels(photons.clone(), &BuildOptions { radius_hint: 0.1 }, kernels);
             let mut together = vec![GatheredNearest::default(); queries.len()];
-            grid.gather_nearest(&queries, k, Kernel::Epanechnikov, &mut together);
+            grid.gather_nearest(&queries, 60, Kernel::Constant, &mut together);
             for (query, together) in queries.iter().zip(&together) {
                 let mut alone = [GatheredNearest::default()];
-                grid.gather_nearest(std::slice::from_ref(query), k, Kernel::Epanechnikov, &mut alone);
-                assert_eq!(*together, alone[0], "{}, {k} nearest, {query:?}", kernels.name);
-                assert!(together.count >= 15_000, "{query:?}: {}", together.count);
+                grid.gather_nearest(std::slice::from_ref(query), 60, Kernel::Constant, &mut alone);
+                assert_eq!(*together, alone[0], "{}, {spread} octaves, {query:?}", kernels.name);
+                let mut sums = [0f64; 3];
+                for photon in &photons {
+                    let d2 = crate::inclusion::distance_sq(photon.position(), query.position);
+                    let is_found = d2 <= together.farthest_sq && together.count > 0;
+                    let flux = if is_found { photon.flux().to_array() } else { [0.0; 3] };
+                    (0..3).for_each(|c| sums[c] += f64::from(flux[c]));
+                }
+                let sums = Vec3::from_array(sums.map(|sum| sum as f32));
+                assert_eq!(together.count, 60, "{query:?}");
+                if spread <= 30 {
+                    assert_eq!(together.flux, sums, "{}, {spread} octaves, {query:?}", kernels.name);
+                }
             }
         }
     }

@@ -9,6 +9,7 @@ use crate::inclusion::PreparedQuery;
 use crate::photon::LOW_MASK;
 use crate::searches::grid::avx512::{distances_sq, dot, floats, normals, splat, tree_sum, weights, words};
 use crate::searches::grid::blocks::{Block, LANES};
+use crate::searches::grid::even::{Octaves, rounded};
 use crate::searches::grid::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, SharedKernels, kernel_index};
 use crate::searches::grid::kth::kth_least;
 use photinus_geometry::Vec3;
@@ -23,7 +24,11 @@ const BRACKETS: [f32; 3] = [0.9, 1.0, 1.1];
 
 fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
     // SAFETY: these kernels are handed out only where the processor has AVX-512F, POPCNT and BMI1.
-    unsafe { collect_blocks(blocks, hits, share, shared) }
+    unsafe {
+        if !(share.is_even() && collect_densely(blocks, hits, share, shared)) {
+            collect_by_lanes(blocks, hits, share, shared);
+        }
+    }
 }
 
 fn nearest(shared: &mut Shared, query: &PreparedQuery, k: usize, guess_sq: f32) -> Found {
@@ -40,8 +45,11 @@ fn nearest(shared: &mut Shared, query: &PreparedQuery, k: usize, guess_sq: f32) 
 fn gather(shared: &Shared, query: &PreparedQuery) -> Gathered {
     // SAFETY: as above.
     unsafe {
+        if let Some(least) = shared.least_octave {
+            return gather_whole(shared, query.r2, least);
+        }
         match kernel_index(query.kernel.kernel) {
-            CONSTANT => gather_rows::<CONSTANT>(shared, query),
+            CONSTANT => gather_evenly(shared, query.r2),
             CONE => gather_rows::<CONE>(shared, query),
             EPANECHNIKOV => gather_rows::<EPANECHNIKOV>(shared, query),
             _ => gather_rows::<GAUSSIAN>(shared, query),
@@ -64,6 +72,15 @@ fn fields(block: &Block, normal: [__m512; 3], quarter: __m512) -> [__m512; 11] {
 
 #[inline]
 #[target_feature(enable = "avx512f")]
+fn set_floats(places: &mut [[f32; LANES]], lanes: __mmask16, fields: &[__m512]) {
+    for (place, field) in places.iter_mut().zip(fields) {
+        // SAFETY: the array holds the sixteen numbers of which some are written.
+        unsafe { _mm512_mask_storeu_ps(place.as_mut_ptr(), lanes, *field) };
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
 fn set_lanes(row: &mut Row, lanes: __mmask16, fields: &[__m512; 11]) {
     let [px, py, pz] = &mut row.position;
     let [nx, ny, nz] = &mut row.normal;
@@ -75,33 +92,111 @@ fn set_lanes(row: &mut Row, lanes: __mmask16, fields: &[__m512; 11]) {
     }
 }
 
-#[target_feature(enable = "avx512f,popcnt,bmi1")]
-fn collect_blocks(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
-    shared.start(share);
-    let query = &share.query;
-    let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
-    let low_limit = _mm512_set1_epi32(query.low_limit as i32);
-    let least_cos = _mm512_set1_ps(share.least_cos);
-    let mut heights = _mm512_setzero_si512();
-    for block in hits {
-        let block = &blocks[*block as usize];
-        let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(distances_sq(block, position), r2);
+/// Tells which photons are shared.
+struct Wanted<'a> {
+    share: &'a Share,
+    position: [__m512; 3],
+    facing: [__m512; 3],
+    r2: __m512,
+    low_limit: __m512i,
+    least_cos: __m512,
+}
+
+impl<'a> Wanted<'a> {
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn new(share: &'a Share) -> Self {
+        let query = &share.query;
+        Self {
+            share,
+            position: splat(query.position),
+            facing: splat(query.normal),
+            r2: _mm512_set1_ps(query.r2),
+            low_limit: _mm512_set1_epi32(query.low_limit as i32),
+            least_cos: _mm512_set1_ps(share.least_cos),
+        }
+    }
+
+    /// The lanes of a block that are, and the normals and quarters that a row holds of it.
+    #[inline]
+    #[target_feature(enable = "avx512f")]
+    fn of(&self, block: &Block) -> Option<(__mmask16, [__m512; 3], __m512)> {
+        let near = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(distances_sq(block, self.position), self.r2);
         if near == 0 {
-            continue;
+            return None;
         }
         let surface = words(&block.surface);
         let low = _mm512_and_si512(surface, _mm512_set1_epi32(LOW_MASK as i32));
-        let mut wanted = _mm512_mask_cmple_epu32_mask(near, low, low_limit);
+        let shallow = _mm512_mask_cmple_epu32_mask(near, low, self.low_limit);
         let normal = normals(surface);
         let length_sq = dot(normal, normal);
         let quarter = _mm512_mul_ps(_mm512_set1_ps(0.25), length_sq);
-        if share.same_normal {
-            wanted = within_60(wanted, normal, quarter, facing);
+        let wanted = if self.share.same_normal {
+            within_60(shallow, normal, quarter, self.facing)
         } else {
-            let cos = dot(normal, facing);
-            let least = _mm512_mul_ps(least_cos, length_sq);
-            wanted = _mm512_mask_cmp_ps_mask::<_CMP_GE_OQ>(wanted, _mm512_mul_ps(cos, _mm512_abs_ps(cos)), least);
+            let cos = dot(normal, self.facing);
+            let least = _mm512_mul_ps(self.least_cos, length_sq);
+            _mm512_mask_cmp_ps_mask::<_CMP_GE_OQ>(shallow, _mm512_mul_ps(cos, _mm512_abs_ps(cos)), least)
+        };
+        Some((wanted, normal, quarter))
+    }
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn collect_densely(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) -> bool {
+    shared.start(share);
+    let of = Wanted::new(share);
+    let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    let one = _mm512_set1_epi32(1);
+    // Less one: black, which is of no octave, is then above all others.
+    let (mut least, mut most) = (_mm512_set1_epi32(-1), _mm512_setzero_si512());
+    let mut count = 0;
+    for block in hits {
+        let block = &blocks[*block as usize];
+        let Some((wanted, normal, quarter)) = of.of(block) else { continue };
+        let words = words(&block.flux);
+        let octaves = _mm512_srli_epi32::<25>(words);
+        least = _mm512_mask_min_epu32(least, wanted, least, _mm512_sub_epi32(octaves, one));
+        most = _mm512_mask_max_epu32(most, wanted, most, octaves);
+        // The photons that are wanted, from the first free place on; of an index the lowest four bits count.
+        let (row, place, more) = (count / LANES, count % LANES, wanted.count_ones() as usize);
+        let packed = _mm512_maskz_compress_epi32(wanted, lanes);
+        let from = _mm512_permutexvar_epi32(_mm512_sub_epi32(lanes, _mm512_set1_epi32(place as i32)), packed);
+        let turned = |field| _mm512_permutexvar_ps(from, field);
+        let position = [turned(floats(&block.x)), turned(floats(&block.y)), turned(floats(&block.z))];
+        let facing = (!share.same_normal).then(|| (normal.map(|n| turned(n)), turned(quarter)));
+        let words = _mm512_permutexvar_epi32(from, words);
+        let places = ((1u32 << more) - 1) << place;
+        while shared.filled.len() * LANES < count + more {
+            shared.add_row();
         }
+        for (row, places) in [(row, places as u16), (row + 1, (places >> LANES) as u16)] {
+            if places != 0 {
+                shared.filled[row] |= places;
+                let row = &mut shared.rows[row];
+                set_floats(&mut row.position, places, &position);
+                // SAFETY: the array holds the sixteen numbers of which some are written.
+                unsafe { _mm512_mask_storeu_epi32(row.words.as_mut_ptr().cast(), places, words) };
+                if let Some((normal, quarter)) = &facing {
+                    set_floats(&mut row.normal, places, normal);
+                    set_floats(std::slice::from_mut(&mut row.quarter), places, std::slice::from_ref(quarter));
+                }
+            }
+        }
+        count += more;
+    }
+    let (least, most) = (_mm512_reduce_min_epu32(least), _mm512_reduce_max_epu32(most));
+    shared.make_whole(Octaves { least: least.saturating_add(1), most }, count)
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn collect_by_lanes(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
+    shared.start(share);
+    let of = Wanted::new(share);
+    let mut heights = _mm512_setzero_si512();
+    for block in hits {
+        let block = &blocks[*block as usize];
+        let Some((mut wanted, normal, quarter)) = of.of(block) else { continue };
         let fields = fields(block, normal, quarter);
         let higher = _mm512_mask_add_epi32(heights, wanted, heights, _mm512_set1_epi32(1));
         // Lanes of equal height go to one row together.
@@ -209,6 +304,26 @@ fn kth_of_few(values: &[[f32; LANES]], [low, high]: [__m512; 2], k: usize) -> f3
     // The largest of those that fewer than `k` are less than.
     let low_ranks = _mm512_cmplt_epi32_mask(ranks, _mm512_set1_epi32(k as i32));
     _mm512_mask_reduce_max_ps(low_ranks, few)
+}
+
+#[target_feature(enable = "avx512f,popcnt")]
+fn gather_whole(shared: &Shared, r2: f32, least: u32) -> Gathered {
+    let r2 = _mm512_set1_ps(r2);
+    let mut sums = [_mm512_setzero_si512(); 3];
+    let mut count = 0;
+    for (row, d2) in shared.rows().iter().zip(&shared.distances_sq) {
+        let found = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(floats(d2), r2);
+        for (sum, whole) in sums.iter_mut().zip(&row.whole) {
+            *sum = _mm512_mask_add_epi32(*sum, found, *sum, words(whole));
+        }
+        count += found.count_ones();
+    }
+    rounded(sums.map(|sum| _mm512_reduce_add_epi32(sum) as u32), least, count)
+}
+
+#[target_feature(enable = "avx512f,popcnt")]
+fn gather_evenly(shared: &Shared, r2: f32) -> Gathered {
+    super::gather_evenly(shared, r2)
 }
 
 #[target_feature(enable = "avx512f,popcnt")]

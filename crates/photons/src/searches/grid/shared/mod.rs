@@ -1,8 +1,10 @@
 //! Photons that neighbouring queries share: those around all of them, with their fields taken apart, so that each query tests
 //! a few hundred photons that are near instead of looking blocks up.
 //!
-//! A photon keeps the lane that it has in its block and stays behind those of its lane in earlier blocks, so that sums add
-//! the same numbers in the same order as over the blocks themselves.
+//! Sums must not depend on the company in which a query asks. Where weights are constant and fluxes are of like size,
+//! sums are exact in whatever order they are made, and photons lie densely. Elsewhere a photon keeps the lane that it has
+//! in its block and stays behind those of its lane in earlier blocks, so that sums add the same numbers in the same order
+//! as over the blocks themselves.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2;
@@ -10,11 +12,13 @@ pub(crate) mod avx2;
 pub(crate) mod avx512;
 
 use super::blocks::{Block, LANES};
+use super::even::{EvenSums, Octaves, rounded};
 use super::kernels::SharedKernels;
 use super::kth::kth_least;
 use super::scalar::tree_sum;
 use crate::Gathered;
-use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale};
+use crate::Kernel;
+use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale, whole};
 use crate::inclusion::PreparedQuery;
 use crate::octahedral::decode_scaled;
 use crate::photon::{NORMAL_MAX, normal_code};
@@ -37,6 +41,9 @@ pub(crate) struct Row {
     /// Flux as [`crate::flux`] has it: raw scale, and mantissas in their places.
     pub(crate) scale: Lanes,
     pub(crate) mantissas: [Lanes; 3],
+    /// The same where photons lie densely: packed, and as whole numbers in units that all rows share.
+    pub(crate) words: [u32; LANES],
+    pub(crate) whole: [[u32; LANES]; 3],
 }
 
 impl Row {
@@ -46,18 +53,31 @@ impl Row {
         quarter: [0.0; LANES],
         scale: [0.0; LANES],
         mantissas: [[0.0; LANES]; 3],
+        words: [0; LANES],
+        whole: [[0; LANES]; 3],
     };
 
-    fn set(&mut self, lane: usize, block: &Block) {
-        let normal = decode_scaled(normal_code(block.surface[lane]), NORMAL_MAX);
-        let mantissas = placed_mantissas(block.flux[lane]);
+    /// Puts the photon that has lane `from` in its block into a lane.
+    fn set(&mut self, lane: usize, block: &Block, from: usize) {
+        let normal = decode_scaled(normal_code(block.surface[from]), NORMAL_MAX);
+        let mantissas = placed_mantissas(block.flux[from]);
         for axis in 0..3 {
-            self.position[axis][lane] = [block.x, block.y, block.z][axis][lane];
+            self.position[axis][lane] = [block.x, block.y, block.z][axis][from];
             self.normal[axis][lane] = normal[axis];
             self.mantissas[axis][lane] = mantissas[axis];
         }
         self.quarter[lane] = 0.25 * ((normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z);
-        self.scale[lane] = raw_scale(block.flux[lane]);
+        self.scale[lane] = raw_scale(block.flux[from]);
+        self.words[lane] = block.flux[from];
+    }
+
+    /// Makes whole numbers of packed fluxes.
+    #[inline(always)]
+    fn make_whole(&mut self, least: u32) {
+        for lane in 0..LANES {
+            let channels = whole(self.words[lane], least);
+            (0..3).for_each(|c| self.whole[c][lane] = channels[c]);
+        }
     }
 }
 
@@ -73,6 +93,23 @@ pub(crate) struct Share {
 }
 
 impl Share {
+    /// Whether all photons weigh the same.
+    fn is_even(&self) -> bool {
+        self.query.kernel.kernel == Kernel::Constant
+    }
+
+    /// The photons that are shared: their blocks and lanes.
+    #[inline(always)]
+    fn wanted<'b>(&self, blocks: &'b [Block], hits: &[u32]) -> impl Iterator<Item = (&'b Block, usize)> {
+        let query = &self.query;
+        hits.iter().map(|block| &blocks[*block as usize]).flat_map(move |block| {
+            let near = block.distances_sq(query.position).map(|d2| d2 <= query.r2);
+            (0..LANES)
+                .filter(move |lane| near[*lane] && self.wants(block.surface[*lane]))
+                .map(move |lane| (block, lane))
+        })
+    }
+
     /// Whether a photon with this surface word may pass the tests of some query.
     fn wants(&self, surface: u32) -> bool {
         if self.same_normal {
@@ -101,6 +138,8 @@ pub(crate) struct Shared {
     heights: [u32; LANES],
     /// Whether the normals of `rows` have passed the test.
     same_normal: bool,
+    /// The octave in whose units fluxes are, where photons lie densely.
+    least_octave: Option<u32>,
     /// Squared distance of each lane of each row where it is found, infinite elsewhere.
     distances_sq: Vec<Lanes>,
 }
@@ -117,20 +156,41 @@ pub(crate) struct Found {
 /// See [`super::kernels::Collect`].
 #[inline(always)]
 fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
+    if !(share.is_even() && collect_densely(blocks, hits, share, shared)) {
+        collect_by_lanes(blocks, hits, share, shared);
+    }
+}
+
+/// Collects photons one behind the other; false where their sums may not be exact.
+#[inline(always)]
+fn collect_densely(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) -> bool {
     shared.start(share);
-    let query = &share.query;
-    for block in hits.iter().map(|block| &blocks[*block as usize]) {
-        for (lane, d2) in block.distances_sq(query.position).into_iter().enumerate() {
-            if d2 <= query.r2 && share.wants(block.surface[lane]) {
-                let height = shared.heights[lane] as usize;
-                if height == shared.filled.len() {
-                    shared.add_row();
-                }
-                shared.heights[lane] += 1;
-                shared.filled[height] |= 1 << lane;
-                shared.rows[height].set(lane, block);
-            }
+    let (mut count, mut octaves) = (0, Octaves::NONE);
+    for (block, lane) in share.wanted(blocks, hits) {
+        let (row, place) = (count / LANES, count % LANES);
+        if row == shared.filled.len() {
+            shared.add_row();
         }
+        shared.filled[row] |= 1 << place;
+        shared.rows[row].set(place, block, lane);
+        octaves = octaves.with(block.flux[lane]);
+        count += 1;
+    }
+    shared.make_whole(octaves, count)
+}
+
+/// Collects photons in the lanes of their blocks.
+#[inline(always)]
+fn collect_by_lanes(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
+    shared.start(share);
+    for (block, lane) in share.wanted(blocks, hits) {
+        let height = shared.heights[lane] as usize;
+        if height == shared.filled.len() {
+            shared.add_row();
+        }
+        shared.heights[lane] += 1;
+        shared.filled[height] |= 1 << lane;
+        shared.rows[height].set(lane, block, lane);
     }
 }
 
@@ -167,6 +227,42 @@ fn nearest(shared: &mut Shared, query: &PreparedQuery, k: usize, _: f32) -> Foun
 /// See [`super::kernels::GatherShared`].
 #[inline(always)]
 fn gather(shared: &Shared, query: &PreparedQuery) -> Gathered {
+    match shared.least_octave {
+        Some(least) => gather_whole(shared, query.r2, least),
+        None if query.kernel.kernel == Kernel::Constant => gather_evenly(shared, query.r2),
+        None => gather_lanes(shared, query),
+    }
+}
+
+#[inline(always)]
+fn gather_whole(shared: &Shared, r2: f32, least: u32) -> Gathered {
+    let (mut sums, mut count) = ([0u32; 3], 0);
+    for (row, d2) in shared.rows().iter().zip(&shared.distances_sq) {
+        for lane in 0..LANES {
+            let is_found = d2[lane] <= r2;
+            for (sum, whole) in sums.iter_mut().zip(&row.whole) {
+                *sum += if is_found { whole[lane] } else { 0 };
+            }
+            count += u32::from(is_found);
+        }
+    }
+    rounded(sums, least, count)
+}
+
+/// In the order of [`super::even::gather_selected`].
+#[inline(always)]
+fn gather_evenly(shared: &Shared, r2: f32) -> Gathered {
+    let mut sums = EvenSums::default();
+    for (row, d2) in shared.rows().iter().zip(&shared.distances_sq) {
+        for lane in 0..LANES {
+            sums.add(lane, d2[lane] <= r2, row.mantissas.map(|mantissas| mantissas[lane]), row.scale[lane]);
+        }
+    }
+    sums.gathered()
+}
+
+#[inline(always)]
+fn gather_lanes(shared: &Shared, query: &PreparedQuery) -> Gathered {
     let mut flux = [[0f32; LANES]; 3];
     let mut count = 0;
     for (row, d2) in shared.rows().iter().zip(&shared.distances_sq) {
@@ -188,6 +284,19 @@ impl Shared {
         self.filled.clear();
         self.heights = [0; LANES];
         self.same_normal = share.same_normal;
+        self.least_octave = None;
+    }
+
+    /// Turns the fluxes of rows that are filled densely into whole numbers; false where they do not fit.
+    #[inline(always)]
+    fn make_whole(&mut self, octaves: Octaves, count: usize) -> bool {
+        let fit = octaves.fit(count);
+        if fit {
+            let rows = self.filled.len();
+            self.rows[..rows].iter_mut().for_each(|row| row.make_whole(octaves.least));
+            self.least_octave = Some(octaves.least);
+        }
+        fit
     }
 
     /// Takes an empty row into use.
