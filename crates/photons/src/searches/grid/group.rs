@@ -13,8 +13,6 @@ use rayon::prelude::*;
 
 /// Queries that are worth a task of their own, in their order.
 const QUERIES_A_TASK: usize = 1 << 15;
-/// Fewer queries than this look photons up by themselves.
-const FEW: usize = 3;
 /// Longest way between queries of a group, in radii that the last search needed.
 const LONGEST: f32 = 0.7;
 /// Balls narrower than this are left to searches one by one: squares of distances in them may underflow.
@@ -132,11 +130,7 @@ impl Group<'_> {
             let count = members.iter().take_while(fits).count().max(1);
             let (piece, rest) = members.split_at(count);
             let (answers, rest_out) = out.split_at_mut(count);
-            if piece.len() < FEW {
-                piece.iter().zip(answers).for_each(|(member, answer)| *answer = self.alone(member));
-            } else {
-                self.together(piece, answers);
-            }
+            self.together(piece, answers);
             (members, out) = (rest, rest_out);
         }
     }

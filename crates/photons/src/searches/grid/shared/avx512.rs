@@ -164,7 +164,7 @@ fn collect_densely(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut S
         let from = _mm512_permutexvar_epi32(_mm512_sub_epi32(lanes, _mm512_set1_epi32(place as i32)), packed);
         let turned = |field| _mm512_permutexvar_ps(from, field);
         let position = [turned(floats(&block.x)), turned(floats(&block.y)), turned(floats(&block.z))];
-        let facing = (!share.same_normal).then(|| (normal.map(|n| turned(n)), turned(quarter)));
+        let facing = (!share.same_normal).then(|| (normal.map(&turned), turned(quarter)));
         let words = _mm512_permutexvar_epi32(from, words);
         let places = ((1u32 << more) - 1) << place;
         while shared.filled.len() * LANES < count + more {
