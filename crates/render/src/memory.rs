@@ -17,7 +17,8 @@ pub struct RenderMemory {
 }
 
 /// Bytes of a photon while its map is built: itself in order of emission, what it is sorted by, and in the map with its
-/// place there. Measured at 61 to 69 with 0.3 to 3 million photons.
+/// place there. Measured at 63 to 68 with 1 to 3 million photons; lists of fewer, and those of single batches, lie where the
+/// pilot's were, which the program holds already.
 const PHOTON_BUILD_BYTES: u64 = 66;
 
 /// Bytes of a photon in a list.
@@ -29,9 +30,6 @@ const PHOTON_BYTES: u64 = 28;
 /// Bytes of an estimate of a wave: its place, its turn and its use in lists with room for those of fuller tiles, those of
 /// one of the next wave, what it is sorted by and its answer. Measured at 187 in `room-1`.
 const ESTIMATE_BYTES: u64 = 185;
-
-/// What the lists of single batches of photons leave behind with each thread for the next pass, at most.
-const LEFT_BYTES: u64 = 2 << 20;
 
 /// Buffers of the film while a picture is written, in halves: the means, their layers and the encoded file. Measured at
 /// 3.4 to 3.5 buffers.
@@ -72,14 +70,12 @@ impl RenderMemory {
         // One map is built after the other.
         let building = (global * PHOTON_BUILD_BYTES + caustic * PHOTON_LIST_BYTES)
             .max(global * PHOTON_BYTES + caustic * PHOTON_BUILD_BYTES);
-        let most_left = if ahead.maps_once { 0 } else { LEFT_BYTES * rayon::current_num_threads() as u64 };
-        let left = (building / 4).min(most_left);
-        let map_build = Self { film: at_build * buffer + marks, photons: building + left, lights, estimates: 0 };
+        let map_build = Self { film: at_build * buffer + marks, photons: building, lights, estimates: 0 };
         // The pass's own buffer, and its tiles before they are put together.
         let film = (before + 1) * buffer + (buffer as f64 * tiles) as u64 + marks + new_marks;
         let estimates = ahead.estimates * ESTIMATE_BYTES;
-        let eye_pass = Self { film, photons: stored * PHOTON_BYTES + left, lights, estimates };
-        let kept = if ahead.maps_once { stored * PHOTON_BYTES } else { left };
+        let eye_pass = Self { film, photons: stored * PHOTON_BYTES, lights, estimates };
+        let kept = if ahead.maps_once { stored * PHOTON_BYTES } else { 0 };
         let writing =
             Self { film: after * buffer + buffer * WRITE_HALVES / 2 + marks, photons: kept, lights, estimates: 0 };
         [map_build, eye_pass, writing].into_iter().max_by_key(Self::total).unwrap_or_default()
