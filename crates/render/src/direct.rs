@@ -21,7 +21,7 @@ use photinus_profile::queries::RayKind;
 pub(crate) const DEFAULT_LEVELS: u32 = 8;
 
 /// Edge of a tile in pixels: rays from all over it end in the same places.
-pub(crate) const TILE: u32 = 64;
+const TILE: u32 = 64;
 
 struct Node {
     ray: Ray,

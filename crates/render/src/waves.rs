@@ -3,7 +3,7 @@
 
 use crate::control::{Cancelled, Observer};
 use crate::counters::Counters;
-use crate::direct::{Buffers, Followed, TILE};
+use crate::direct::{Buffers, Followed};
 use crate::eye_pass::EyePass;
 use crate::maps::Maps;
 use crate::pool::Pool;
@@ -15,8 +15,10 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// Edge of a tile in pixels: where a wave ends threads wait for the last one.
+const TILE: u32 = 32;
 /// Least tiles of a wave, so that many threads have some; each has as many more at most as all before it.
-const LEAST_WAVE: u32 = 16;
+const LEAST_WAVE: u32 = 64;
 /// Estimates of a wave, about, where tiles do not ask for many more: many enough that most lie close to others, few
 /// enough for the memory that they take.
 pub(crate) const WAVE_ESTIMATES: u64 = 1 << 18;
