@@ -21,7 +21,7 @@ const TILE: u32 = 32;
 const LEAST_WAVE: u32 = 64;
 /// Estimates of a wave, about, where tiles do not ask for many more: many enough that most lie close to others, few
 /// enough for the memory that they take.
-pub(crate) const WAVE_ESTIMATES: u64 = 1 << 18;
+pub(crate) const WAVE_ESTIMATES: u64 = 1 << 19;
 /// Estimates of a pixel, roughly, where mirrors are about.
 pub(crate) const ESTIMATES_A_PIXEL: u64 = 4;
 

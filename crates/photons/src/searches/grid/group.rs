@@ -186,7 +186,7 @@ impl Group<'_> {
     /// Answers members by the photons shared, up to the first whose nearest are not all among them; returns how many,
     /// and how many photons that one found.
     fn answer_shared(&mut self, ball: &Ball, members: &[Member], out: &mut [GatheredNearest]) -> (usize, u32) {
-        let SharedKernels { nearest, gather, .. } = self.grid.kernels.shared;
+        let SharedKernels { nearest, gather, gather_few, .. } = self.grid.kernels.shared;
         let finder = &mut self.finder;
         let photons = finder.shared.photons();
         for (i, (member, answer)) in members.iter().zip(out).enumerate() {
@@ -197,6 +197,15 @@ impl Group<'_> {
             if !is_whole {
                 query.r2 = reach * reach;
             }
+            // Where the last one found too few this one will, too.
+            if is_whole
+                && finder.had_few
+                && let Some(few) = gather_few(&finder.shared, &query, self.k as usize)
+            {
+                (finder.tested, finder.last_radius) = (finder.tested + photons, member.radius);
+                *answer = few;
+                continue;
+            }
             let guess_sq = finder.last_radius * finder.last_radius;
             let found = nearest(&mut finder.shared, &query, self.k as usize, guess_sq);
             finder.tested += photons;
@@ -205,7 +214,7 @@ impl Group<'_> {
                 return (i, found.count);
             }
             let radius = if has_all { found.limit_sq.sqrt() } else { member.radius };
-            finder.last_radius = radius;
+            (finder.last_radius, finder.had_few) = (radius, !has_all);
             query.r2 = if has_all { found.limit_sq } else { whole };
             query.kernel = PreparedKernel::new(query.kernel.kernel, radius);
             let sums = gather(&finder.shared, &query);

@@ -6,7 +6,7 @@ use super::scalar;
 use super::shared::{Found, Share, Shared};
 use crate::inclusion::PreparedQuery;
 use crate::photon::NORMAL_MASK;
-use crate::{Gathered, Kernel};
+use crate::{Gathered, GatheredNearest, Kernel};
 use photinus_geometry::Vec3;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -54,12 +54,17 @@ pub(crate) type Nearest = fn(&mut Shared, &PreparedQuery, usize, f32) -> Found;
 /// Sums what the last query found among shared photons up to a squared distance.
 pub(crate) type GatherShared = fn(&Shared, &PreparedQuery) -> Gathered;
 
+/// Sums all that a query finds among shared photons whose sums are whole numbers, where fewer than so many are found: in one
+/// pass.
+pub(crate) type GatherFew = fn(&Shared, &PreparedQuery, usize) -> Option<GatheredNearest>;
+
 /// Kernels for photons that neighbouring queries share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SharedKernels {
     pub(crate) collect: Collect,
     pub(crate) nearest: Nearest,
     pub(crate) gather: GatherShared,
+    pub(crate) gather_few: GatherFew,
 }
 
 /// Kernels for one width of vectors.

@@ -24,6 +24,8 @@ pub(crate) struct NearestFinder {
     distances_sq: Vec<f32>,
     /// Radius that the last query needed; zero before the first.
     pub(crate) last_radius: f32,
+    /// Whether fewer than the nearest were all that the last query of a group found.
+    pub(crate) had_few: bool,
     /// Photons that the queries of a group share, those within this distance of its centre.
     pub(crate) shared: Shared,
     pub(crate) shared_extent: f32,
@@ -39,6 +41,7 @@ impl NearestFinder {
             selected: Vec::with_capacity(64),
             distances_sq: Vec::with_capacity(512),
             last_radius: 0.0,
+            had_few: false,
             shared: Shared::default(),
             shared_extent: 0.0,
             tested: 0,

@@ -1,13 +1,13 @@
 //! The portable code for shared photons, compiled for 256-bit vectors.
 
 use super::{Found, Share, Shared};
-use crate::Gathered;
 use crate::inclusion::PreparedQuery;
 use crate::searches::grid::blocks::Block;
 use crate::searches::grid::kernels::SharedKernels;
+use crate::{Gathered, GatheredNearest};
 
 /// For processors that have AVX2, POPCNT and BMI1.
-pub(crate) const KERNELS: SharedKernels = SharedKernels { collect, nearest, gather };
+pub(crate) const KERNELS: SharedKernels = SharedKernels { collect, nearest, gather, gather_few };
 
 fn collect(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
     // SAFETY: these kernels are handed out only where the processor has AVX2, POPCNT and BMI1.
@@ -24,6 +24,11 @@ fn gather(shared: &Shared, query: &PreparedQuery) -> Gathered {
     unsafe { gather_avx2(shared, query) }
 }
 
+fn gather_few(shared: &Shared, query: &PreparedQuery, k: usize) -> Option<GatheredNearest> {
+    // SAFETY: as above.
+    unsafe { gather_few_avx2(shared, query, k) }
+}
+
 #[target_feature(enable = "avx2,popcnt,bmi1")]
 fn collect_avx2(blocks: &[Block], hits: &[u32], share: &Share, shared: &mut Shared) {
     super::collect(blocks, hits, share, shared);
@@ -37,4 +42,9 @@ fn nearest_avx2(shared: &mut Shared, query: &PreparedQuery, k: usize, guess_sq: 
 #[target_feature(enable = "avx2,popcnt,bmi1")]
 fn gather_avx2(shared: &Shared, query: &PreparedQuery) -> Gathered {
     super::gather(shared, query)
+}
+
+#[target_feature(enable = "avx2,popcnt,bmi1")]
+fn gather_few_avx2(shared: &Shared, query: &PreparedQuery, k: usize) -> Option<GatheredNearest> {
+    super::gather_few(shared, query, k)
 }

@@ -3,7 +3,6 @@
 //! No fused multiply-add: every operation rounds as the scalar kernel's does.
 
 use super::{Found, Row, Share, Shared};
-use crate::Gathered;
 use crate::flux::{MANTISSA_MASKS, PLACED_UNITS, RAW_SCALE_MASK};
 use crate::inclusion::PreparedQuery;
 use crate::photon::LOW_MASK;
@@ -12,11 +11,12 @@ use crate::searches::grid::blocks::{Block, LANES};
 use crate::searches::grid::even::{Octaves, rounded};
 use crate::searches::grid::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, SharedKernels, kernel_index};
 use crate::searches::grid::kth::kth_least;
+use crate::{Gathered, GatheredNearest};
 use photinus_geometry::Vec3;
 use std::arch::x86_64::*;
 
 /// For processors that have AVX-512F, POPCNT and BMI1.
-pub(crate) const KERNELS: SharedKernels = SharedKernels { collect, nearest, gather };
+pub(crate) const KERNELS: SharedKernels = SharedKernels { collect, nearest, gather, gather_few };
 
 /// Parts of the guess between two of which the `k`-th squared distance is looked for: where neighbours ask it is there
 /// nineteen times in twenty, and with it some ten others.
@@ -53,6 +53,18 @@ fn gather(shared: &Shared, query: &PreparedQuery) -> Gathered {
             CONE => gather_rows::<CONE>(shared, query),
             EPANECHNIKOV => gather_rows::<EPANECHNIKOV>(shared, query),
             _ => gather_rows::<GAUSSIAN>(shared, query),
+        }
+    }
+}
+
+fn gather_few(shared: &Shared, query: &PreparedQuery, k: usize) -> Option<GatheredNearest> {
+    let least = shared.least_octave?;
+    // SAFETY: as above.
+    unsafe {
+        if shared.same_normal {
+            few_rows::<true>(shared, query, k, least)
+        } else {
+            few_rows::<false>(shared, query, k, least)
         }
     }
 }
@@ -225,6 +237,56 @@ fn within_60(lanes: __mmask16, normal: [__m512; 3], quarter: __m512, facing: [__
     _mm512_mask_cmp_ps_mask::<_CMP_GE_OQ>(front, _mm512_mul_ps(cos, cos), quarter)
 }
 
+/// The lanes of a row that a query finds, and the squared distances of all.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn found_of<const SAME_NORMAL: bool>(
+    row: &Row,
+    position: [__m512; 3],
+    facing: [__m512; 3],
+    r2: __m512,
+) -> (__mmask16, __m512) {
+    let [x, y, z] = &row.position;
+    let d = [
+        _mm512_sub_ps(floats(x), position[0]),
+        _mm512_sub_ps(floats(y), position[1]),
+        _mm512_sub_ps(floats(z), position[2]),
+    ];
+    let d2 = dot(d, d);
+    let found = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, r2);
+    if SAME_NORMAL {
+        return (found, d2);
+    }
+    let [x, y, z] = &row.normal;
+    (within_60(found, [floats(x), floats(y), floats(z)], floats(&row.quarter), facing), d2)
+}
+
+#[target_feature(enable = "avx512f,popcnt,bmi1")]
+fn few_rows<const SAME_NORMAL: bool>(
+    shared: &Shared,
+    query: &PreparedQuery,
+    k: usize,
+    least: u32,
+) -> Option<GatheredNearest> {
+    let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
+    let (mut sums, one) = ([_mm512_setzero_si512(); 3], _mm512_set1_epi32(1));
+    let (mut counts, mut farthest) = (_mm512_setzero_si512(), _mm512_setzero_ps());
+    for row in shared.rows() {
+        let (found, d2) = found_of::<SAME_NORMAL>(row, position, facing, r2);
+        for (sum, whole) in sums.iter_mut().zip(&row.whole) {
+            *sum = _mm512_mask_add_epi32(*sum, found, *sum, words(whole));
+        }
+        counts = _mm512_mask_add_epi32(counts, found, counts, one);
+        farthest = _mm512_mask_max_ps(farthest, found, farthest, d2);
+    }
+    let count = _mm512_reduce_add_epi32(counts) as u32;
+    if count as usize >= k {
+        return None;
+    }
+    let Gathered { flux, count } = rounded(sums.map(|sum| _mm512_reduce_add_epi32(sum) as u32), least, count);
+    Some(GatheredNearest { flux, count, farthest_sq: _mm512_reduce_max_ps(farthest) })
+}
+
 #[target_feature(enable = "avx512f,popcnt,bmi1")]
 fn nearest_rows<const SAME_NORMAL: bool>(shared: &mut Shared, query: &PreparedQuery, k: usize, guess_sq: f32) -> Found {
     let (position, facing, r2) = (splat(query.position), splat(query.normal), _mm512_set1_ps(query.r2));
@@ -237,18 +299,7 @@ fn nearest_rows<const SAME_NORMAL: bool>(shared: &mut Shared, query: &PreparedQu
     let (mut counts, one) = ([_mm512_setzero_si512(); 4], _mm512_set1_epi32(1));
     let mut farthest = _mm512_setzero_ps();
     for (row, out) in all_rows[..rows].iter().zip(&mut *distances_sq) {
-        let [x, y, z] = &row.position;
-        let d = [
-            _mm512_sub_ps(floats(x), position[0]),
-            _mm512_sub_ps(floats(y), position[1]),
-            _mm512_sub_ps(floats(z), position[2]),
-        ];
-        let d2 = dot(d, d);
-        let mut found = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(d2, r2);
-        if !SAME_NORMAL {
-            let [x, y, z] = &row.normal;
-            found = within_60(found, [floats(x), floats(y), floats(z)], floats(&row.quarter), facing);
-        }
+        let (found, d2) = found_of::<SAME_NORMAL>(row, position, facing, r2);
         // SAFETY: the array holds the sixteen numbers written.
         unsafe { _mm512_storeu_ps(out.as_mut_ptr(), _mm512_mask_blend_ps(found, infinite, d2)) };
         let up_to = |limit| _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(found, d2, limit);

@@ -16,16 +16,16 @@ use super::even::{EvenSums, Octaves, rounded};
 use super::kernels::SharedKernels;
 use super::kth::kth_least;
 use super::scalar::tree_sum;
-use crate::Gathered;
 use crate::Kernel;
 use crate::flux::{PLACED_UNITS, placed_mantissas, raw_scale, whole};
 use crate::inclusion::PreparedQuery;
 use crate::octahedral::decode_scaled;
 use crate::photon::{NORMAL_MAX, normal_code};
+use crate::{Gathered, GatheredNearest};
 use photinus_geometry::Vec3;
 
 /// The kernels a lane at a time, and as much at a time as the compiler sees fit.
-pub(crate) const SCALAR: SharedKernels = SharedKernels { collect, nearest, gather };
+pub(crate) const SCALAR: SharedKernels = SharedKernels { collect, nearest, gather, gather_few };
 
 type Lanes = [f32; LANES];
 
@@ -69,6 +69,18 @@ impl Row {
         self.quarter[lane] = 0.25 * ((normal.x * normal.x + normal.y * normal.y) + normal.z * normal.z);
         self.scale[lane] = raw_scale(block.flux[from]);
         self.words[lane] = block.flux[from];
+    }
+
+    #[inline(always)]
+    fn distance_sq(&self, lane: usize, p: Vec3) -> f32 {
+        let d = [self.position[0][lane] - p.x, self.position[1][lane] - p.y, self.position[2][lane] - p.z];
+        (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]
+    }
+
+    #[inline(always)]
+    fn within_60(&self, lane: usize, n: Vec3) -> bool {
+        let dot = (self.normal[0][lane] * n.x + self.normal[1][lane] * n.y) + self.normal[2][lane] * n.z;
+        (dot > 0.0) & (dot * dot >= self.quarter[lane])
     }
 
     /// Makes whole numbers of packed fluxes.
@@ -200,15 +212,11 @@ fn nearest(shared: &mut Shared, query: &PreparedQuery, k: usize, _: f32) -> Foun
     shared.distances_sq.clear();
     let mut counts = [0u32; LANES];
     let mut farthest = [0f32; LANES];
-    let (p, n) = (query.position, query.normal);
     for row in &shared.rows[..shared.filled.len()] {
         let mut out = [0f32; LANES];
         for i in 0..LANES {
-            let d = [row.position[0][i] - p.x, row.position[1][i] - p.y, row.position[2][i] - p.z];
-            let d2 = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-            let dot = (row.normal[0][i] * n.x + row.normal[1][i] * n.y) + row.normal[2][i] * n.z;
-            let is_alike = shared.same_normal | ((dot > 0.0) & (dot * dot >= row.quarter[i]));
-            let is_found = (d2 <= query.r2) & is_alike;
+            let d2 = row.distance_sq(i, query.position);
+            let is_found = (d2 <= query.r2) & (shared.same_normal | row.within_60(i, query.normal));
             out[i] = if is_found { d2 } else { f32::INFINITY };
             counts[i] += u32::from(is_found);
             farthest[i] = if is_found & (d2 > farthest[i]) { d2 } else { farthest[i] };
@@ -247,6 +255,26 @@ fn gather_whole(shared: &Shared, r2: f32, least: u32) -> Gathered {
         }
     }
     rounded(sums, least, count)
+}
+
+/// See [`super::kernels::GatherFew`].
+#[inline(always)]
+fn gather_few(shared: &Shared, query: &PreparedQuery, k: usize) -> Option<GatheredNearest> {
+    let least = shared.least_octave?;
+    let (mut sums, mut count, mut farthest_sq) = ([0u32; 3], 0, 0f32);
+    for row in shared.rows() {
+        for lane in 0..LANES {
+            let d2 = row.distance_sq(lane, query.position);
+            let is_found = (d2 <= query.r2) & (shared.same_normal | row.within_60(lane, query.normal));
+            for (sum, whole) in sums.iter_mut().zip(&row.whole) {
+                *sum = sum.wrapping_add(if is_found { whole[lane] } else { 0 });
+            }
+            count += u32::from(is_found);
+            farthest_sq = if is_found & (d2 > farthest_sq) { d2 } else { farthest_sq };
+        }
+    }
+    let Gathered { flux, count } = rounded(sums, least, count);
+    ((count as usize) < k).then_some(GatheredNearest { flux, count, farthest_sq })
 }
 
 /// In the order of [`super::even::gather_selected`].
