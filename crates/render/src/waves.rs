@@ -134,15 +134,12 @@ impl EyePass<'_> {
         {
             let mut wave = self.start(range, &tiles, &mut lists);
             let estimates = || {
-                behind.take().map(|mut wave| {
+                if let Some(mut wave) = behind.take() {
                     self.make(&mut wave, &shared, &mut maker);
-                    wave
-                })
+                    wave.finish(&tiles, film, &mut together, &mut lists);
+                }
             };
-            let (done, ()) = rayon::join(estimates, || self.follow_wave(&mut wave, &shared));
-            if let Some(done) = done {
-                done.finish(&tiles, film, &mut together, &mut lists);
-            }
+            rayon::join(estimates, || self.follow_wave(&mut wave, &shared));
             waves.asked_for(wave.tiles.iter().map(|tile| tile.pooled.spots.len() as u64).sum());
             while wave.samples + 1 < self.spp && self.make(&mut wave, &shared, &mut maker) {
                 self.follow_wave(&mut wave, &shared);
