@@ -1,8 +1,9 @@
 //! Sums of the nearest photons where all weigh the same: exact, so that the order in which they are made does not matter.
 //!
 //! A flux has ten bits but for its octave. Sums in f64 are exact as long as the octaves of 2^n photons span 43 - n; those
-//! in whole numbers, of which vectors hold twice as many, as long as [`Octaves::fit`] says, which is what photons that
-//! neighbours share pass or lie in lanes for. Both are rounded to f32 once, and so are the same.
+//! in whole numbers, of which vectors hold twice as many, as long as [`Octaves::fit`] says. Both are rounded to f32 once,
+//! and so are the same. Photons that neighbours share are summed as whole numbers where they fit, else in f64 in the
+//! order in which a query alone sums them.
 
 use super::blocks::{Block, LANES};
 use super::kernels::Selected;
