@@ -80,12 +80,14 @@ impl Layers {
 
     /// Adds a layer of three channels with the given names, e.g. `X`, `Y`, `Z` for normals.
     pub fn push_vectors(&mut self, name: &str, channel_names: [&str; 3], vectors: &[[f32; 3]]) {
-        let channels = (0..3)
-            .map(|c| Channel {
-                name: channel_names[c].to_string(),
-                samples: vectors.par_iter().with_min_len(PIXELS_A_TASK).map(|vector| vector[c]).collect(),
-            })
-            .collect();
+        let plane = |c: usize| vectors.par_iter().with_min_len(PIXELS_A_TASK).map(|vector| vector[c]).collect();
+        self.push_planes(name, channel_names, [plane(0), plane(1), plane(2)]);
+    }
+
+    /// Adds a layer of three channels with the given names by their samples.
+    pub fn push_planes(&mut self, name: &str, channel_names: [&str; 3], planes: [Vec<f32>; 3]) {
+        let channels = channel_names.into_iter().zip(planes);
+        let channels = channels.map(|(name, samples)| Channel { name: name.to_string(), samples }).collect();
         self.layers.push(Layer { name: name.to_string(), channels });
     }
 
@@ -111,20 +113,23 @@ impl Layers {
 
     /// A layer as a picture: its `R`, `G`, `B`, or its `Y` or single channel as grey; `None` where it has neither.
     pub fn image(&self, layer_name: &str) -> Option<Image> {
-        let layer = self.layer(layer_name)?;
-        let find = |name: &str| layer.channels.iter().find(|c| c.name.eq_ignore_ascii_case(name)).map(|c| &c.samples);
-        let planes = if let (Some(r), Some(g), Some(b)) = (find("R"), find("G"), find("B")) {
-            [r, g, b]
-        } else if let Some(y) = find("Y") {
-            [y, y, y]
-        } else if let [only] = layer.channels.as_slice() {
-            [&only.samples; 3]
-        } else {
-            return None;
-        };
+        let planes = self.rgb_planes(layer_name)?;
         let places = (0..self.width * self.height).into_par_iter().with_min_len(PIXELS_A_TASK);
         let pixels = places.map(|i| [planes[0][i], planes[1][i], planes[2][i]]).collect();
         Some(Image { width: self.width, height: self.height, pixels })
+    }
+
+    /// The samples of what [`Layers::image`] shows.
+    pub(crate) fn rgb_planes(&self, layer_name: &str) -> Option<[&[f32]; 3]> {
+        let layer = self.layer(layer_name)?;
+        let find = |name: &str| layer.channels.iter().find(|c| c.name.eq_ignore_ascii_case(name));
+        let channels = match (find("R"), find("G"), find("B"), find("Y"), layer.channels.as_slice()) {
+            (Some(r), Some(g), Some(b), ..) => [r, g, b],
+            (.., Some(y), _) => [y; 3],
+            (.., [only]) => [only; 3],
+            _ => return None,
+        };
+        Some(channels.map(|channel| &channel.samples[..]))
     }
 }
 

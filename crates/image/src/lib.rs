@@ -24,6 +24,6 @@ pub use read::{
     read_layers,
 };
 pub use write::{
-    encode_exr, encode_png, remove_abandoned, temporary_in, write_atomic, write_exr, write_png, write_png8,
-    write_png8_rgba,
+    encode_exr, encode_png, remove_abandoned, temporary_in, write_atomic, write_exr, write_layers_png, write_png,
+    write_png8, write_png8_rgba,
 };

@@ -22,12 +22,16 @@ use photinus_num::StreamKind;
 use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError};
 use photinus_profile::queries::{Block, BlockKey, MapKind, Stage};
 use photinus_scene::Light;
+use rayon::prelude::*;
 
 /// Shrinking of the radius, Knaus and Zwicker 2011, section 5: the area falls by (i + ALPHA) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
 
 /// Looks at where photons from infinity are useful; those that are aimed already show it better.
 const AIM_ROUNDS: u32 = 2;
+
+/// Pixels that one task finishes.
+const PIXELS_A_TASK: usize = 1 << 15;
 
 /// Why a render cannot start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -374,7 +378,7 @@ impl<'w> Renderer<'w> {
             _ => self.film.mean(),
         };
         let passes = self.film.passes().max(1) as f32;
-        for pixel in mean.chunks_exact_mut(self.layout.channels()) {
+        let finish = |pixel: &mut [f32]| {
             if let Some(weight) = self.layout.weight() {
                 let scale = if pixel[weight] > 0.0 { 1.0 / pixel[weight] } else { 0.0 };
                 let sums = pixel.iter_mut().enumerate().filter(|(channel, _)| self.layout.is_sum(*channel));
@@ -391,7 +395,8 @@ impl<'w> Renderer<'w> {
                     pixel[offset] = (pixel[offset] * passes).round();
                 }
             }
-        }
+        };
+        mean.par_chunks_exact_mut(self.layout.channels()).with_min_len(PIXELS_A_TASK).for_each(finish);
         mean
     }
 

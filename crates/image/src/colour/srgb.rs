@@ -38,15 +38,27 @@ impl SrgbCodes {
         let code = |linear: f32| quantise(linear_to_srgb(linear));
         let mut ends = [f32::INFINITY; 256];
         for (k, end) in ends[..255].iter_mut().enumerate() {
-            // Positive floats are ordered as their bits.
-            let (mut below, mut reached) = (0.0f32.to_bits(), 1.0f32.to_bits());
+            // The inverse curve leads close to it. Positive floats are ordered as their bits.
+            let near = srgb_to_linear((k as f32 + 0.5) / 255.0);
+            let (mut below, mut reached) = ((near * 0.9999).to_bits(), (near * 1.0001).to_bits());
+            debug_assert!(
+                usize::from(code(f32::from_bits(below))) <= k && usize::from(code(f32::from_bits(reached))) > k
+            );
             while reached - below > 1 {
                 let middle = below + (reached - below) / 2;
                 if usize::from(code(f32::from_bits(middle))) > k { reached = middle } else { below = middle }
             }
             *end = f32::from_bits(reached);
         }
-        Self { first: std::array::from_fn(|part| code(part as f32 / PARTS as f32)), ends }
+        // A part's code is the number of ends that it has reached.
+        let mut reached = 0;
+        let first = std::array::from_fn(|part| {
+            while part as f32 / PARTS as f32 >= ends[reached] {
+                reached += 1;
+            }
+            reached as u8
+        });
+        Self { ends, first }
     }
 
     /// The code of linear light; out of range clamps, NaN is 0.

@@ -6,4 +6,4 @@ mod png;
 
 pub use atomic::{remove_abandoned, temporary_in, write_atomic};
 pub use exr::{encode_exr, write_exr};
-pub use png::{encode_png, write_png, write_png8, write_png8_rgba};
+pub use png::{encode_png, write_layers_png, write_png, write_png8, write_png8_rgba};

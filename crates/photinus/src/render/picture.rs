@@ -2,7 +2,7 @@
 
 use crate::Result;
 use photinus_image::tonemap::Tonemap;
-use photinus_image::{Image, Layers, write_exr, write_png};
+use photinus_image::{Image, Layers, write_exr, write_layers_png};
 use photinus_render::{Aov, FilmLayout};
 use rayon::prelude::*;
 use std::path::Path;
@@ -22,21 +22,21 @@ impl Picture {
     pub(super) fn new(pixels: &[f32], layout: &FilmLayout, width: u32, height: u32, about: &[(&str, String)]) -> Self {
         let mut layers = Layers::new(width as usize, height as usize);
         let stride = layout.channels();
-        let rgb = |offset: usize| -> Vec<[f32; 3]> {
-            let pixels = pixels.par_chunks_exact(stride).with_min_len(PIXELS_A_TASK);
-            pixels.map(|p| [p[offset], p[offset + 1], p[offset + 2]]).collect()
+        let one = |offset: usize| -> Vec<f32> {
+            pixels.par_chunks_exact(stride).with_min_len(PIXELS_A_TASK).map(|p| p[offset]).collect()
         };
-        let one = |offset: usize| pixels.chunks_exact(stride).map(|p| p[offset]).collect::<Vec<f32>>();
-        layers.push_rgb("", &rgb(0));
+        let three = |offset: usize| [one(offset), one(offset + 1), one(offset + 2)];
+        const RGB: [&str; 3] = ["R", "G", "B"];
+        layers.push_planes("", RGB, three(0));
         for aov in Aov::ALL {
             let Some(offset) = layout.offset(aov) else { continue };
             match aov {
-                Aov::Normal => layers.push_vectors(aov.name(), ["X", "Y", "Z"], &rgb(offset)),
+                Aov::Normal => layers.push_planes(aov.name(), ["X", "Y", "Z"], three(offset)),
                 Aov::Depth => layers.push_channel(aov.name(), "Z", one(offset)),
                 Aov::ObjectId | Aov::MaterialId => layers.push_channel(aov.name(), "id", one(offset)),
                 Aov::PhotonDensity | Aov::Variance => layers.push_channel(aov.name(), "Y", one(offset)),
                 Aov::Albedo | Aov::Direct | Aov::Indirect | Aov::Caustic | Aov::Emitted => {
-                    layers.push_rgb(aov.name(), &rgb(offset));
+                    layers.push_planes(aov.name(), RGB, three(offset));
                 }
             }
         }
@@ -62,6 +62,6 @@ impl Picture {
     /// # Errors
     /// [`crate::Error::Image`] where the file cannot be written.
     pub fn write_png(&self, path: impl AsRef<Path>, tonemap: Tonemap, exposure_ev: f32) -> Result<()> {
-        Ok(write_png(path, &self.image(), tonemap, exposure_ev)?)
+        Ok(write_layers_png(path, &self.layers, tonemap, exposure_ev)?)
     }
 }

@@ -3,7 +3,7 @@
 //! BVHs", HPG 2017, section 3.1).
 
 use super::binary::{BinaryTree, PARALLEL_PRIMS, scaled_half_area};
-use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
+use super::layout::{MAX_IDS, WIDTH};
 use arrayvec::ArrayVec;
 use photinus_geometry::Primitives;
 
@@ -16,7 +16,7 @@ const ID_COST: f32 = 1.0;
 
 /// What is best done with a binary subtree when it may take up so many slots of a node.
 #[derive(Clone, Copy)]
-enum Choice {
+pub enum Choice {
     /// One slot: a leaf.
     Leaf,
     /// One slot: a node of its own.
@@ -47,61 +47,69 @@ pub enum Leaves {
     Ids,
 }
 
-/// The arrays of a wide tree.
-pub struct WideArrays {
-    /// Nodes; the root is the first.
-    pub nodes: Vec<Node>,
-    /// Triangle blocks; the first is empty.
-    pub blocks: Vec<TriangleBlock>,
-    /// Ids of leaves that are not blocks.
-    pub ids: Vec<u32>,
-    /// Levels of nodes.
-    pub levels: u32,
-}
-
 /// The binary nodes that fill the slots of a node, and what becomes of them.
-type Slots = ArrayVec<(usize, Choice), WIDTH>;
+pub type Slots = ArrayVec<(usize, Choice), WIDTH>;
 
-/// What is collapsed.
-struct Binary<'a> {
-    tree: &'a BinaryTree,
-    primitives: &'a Primitives,
+/// A tree over primitives.
+pub struct Binary<'a> {
+    /// The tree.
+    pub tree: &'a BinaryTree,
+    /// What it is over.
+    pub primitives: &'a Primitives,
     leaves: Leaves,
 }
 
-struct Collapse<'a> {
-    binary: Binary<'a>,
+/// A binary tree with what is best done with it.
+pub struct Collapse<'a> {
+    /// What is collapsed.
+    pub binary: Binary<'a>,
     plans: Vec<Plan>,
-    out: WideArrays,
 }
 
-/// Collapses `tree`; `None` where an array outgrows its index.
-pub fn collapse(tree: &BinaryTree, primitives: &Primitives, leaves: Leaves) -> Option<WideArrays> {
-    // Room for what most trees need: lists that grow are copied.
-    let prims = tree.prims.len();
-    let mut out = WideArrays {
-        nodes: Vec::with_capacity(1 + prims / 5),
-        blocks: Vec::with_capacity(1 + prims / 4),
-        ids: Vec::new(),
-        levels: 1,
-    };
-    out.nodes.push(Node::empty());
-    out.blocks.push(TriangleBlock::empty());
-    if tree.nodes.is_empty() {
-        return Some(out);
+impl<'a> Collapse<'a> {
+    /// Plans `tree`, which is not empty.
+    pub fn new(tree: &'a BinaryTree, primitives: &'a Primitives, leaves: Leaves) -> Self {
+        let binary = Binary { tree, primitives, leaves };
+        let mut plans = vec![Plan { choices: [Choice::Leaf; WIDTH - 1], node_split: 0 }; tree.nodes.len()];
+        binary.plan(0, &mut plans);
+        Self { binary, plans }
     }
-    let binary = Binary { tree, primitives, leaves };
-    let mut plans = vec![Plan { choices: [Choice::Leaf; WIDTH - 1], node_split: 0 }; tree.nodes.len()];
-    binary.plan(0, &mut plans);
-    let mut c = Collapse { binary, plans, out };
-    c.emit_node(0, 0, 1);
-    let fits = [c.out.nodes.len(), c.out.blocks.len(), c.out.ids.len()].iter().all(|n| *n <= MAX_INDEX);
-    fits.then_some(c.out)
+
+    /// What fills the slots of a subtree that is a node, in tree order.
+    pub fn slots(&self, index: usize) -> Slots {
+        let mut slots = Slots::new();
+        let node = &self.binary.tree.nodes[index];
+        if node.left_count == 0 || (index == 0 && matches!(self.plans[0].choices[0], Choice::Leaf)) {
+            slots.push((index, Choice::Leaf));
+        } else {
+            let [a, b] = self.binary.tree.children(index);
+            let k = usize::from(self.plans[index].node_split);
+            self.fill(a, k, &mut slots);
+            self.fill(b, WIDTH - k, &mut slots);
+        }
+        slots
+    }
+
+    /// Appends the binary nodes that fill up to `slots` slots, in tree order.
+    fn fill(&self, index: usize, mut slots: usize, out: &mut Slots) {
+        let plan = &self.plans[index];
+        while matches!(plan.choices[slots - 1], Choice::Fewer) {
+            slots -= 1;
+        }
+        match plan.choices[slots - 1] {
+            Choice::Split(k) => {
+                let [a, b] = self.binary.tree.children(index);
+                self.fill(a, usize::from(k), out);
+                self.fill(b, slots - usize::from(k), out);
+            }
+            choice => out.push((index, choice)),
+        }
+    }
 }
 
 impl Binary<'_> {
     /// Whether the leaf of a subtree would be a block; the alternative is ids. Mixed subtrees are no leaf.
-    fn leaf_kind(&self, index: usize) -> Option<Leaves> {
+    pub fn leaf_kind(&self, index: usize) -> Option<Leaves> {
         let node = &self.tree.nodes[index];
         let prims = &self.tree.prims[node.first as usize..(node.first + node.count) as usize];
         if prims.len() > WIDTH {
@@ -109,7 +117,7 @@ impl Binary<'_> {
         }
         let is_triangle = |id: u32| (id as usize) < self.primitives.triangle_count();
         if self.leaves == Leaves::Ids || prims.iter().all(|p| !is_triangle(p.id)) {
-            (prims.len() <= super::layout::MAX_IDS).then_some(Leaves::Ids)
+            (prims.len() <= MAX_IDS).then_some(Leaves::Ids)
         } else {
             prims.iter().all(|p| is_triangle(p.id)).then_some(Leaves::Blocks)
         }
@@ -169,81 +177,5 @@ impl Binary<'_> {
             }
         }
         (costs, plan)
-    }
-}
-
-impl Collapse<'_> {
-    /// Writes the subtree at `index` as the wide node `place`, which exists.
-    fn emit_node(&mut self, index: usize, place: usize, level: u32) {
-        self.out.levels = self.out.levels.max(level);
-        let mut slots = Slots::new();
-        let node = &self.binary.tree.nodes[index];
-        if node.left_count == 0 || (index == 0 && matches!(self.plans[0].choices[0], Choice::Leaf)) {
-            slots.push((index, Choice::Leaf));
-        } else {
-            let [a, b] = self.binary.tree.children(index);
-            let k = usize::from(self.plans[index].node_split);
-            self.slots_of(a, k, &mut slots);
-            self.slots_of(b, WIDTH - k, &mut slots);
-        }
-        // Children of a node lie side by side.
-        let first = self.out.nodes.len();
-        let interior = slots.iter().filter(|(_, choice)| matches!(choice, Choice::Node)).count();
-        self.out.nodes.resize_with(first + interior, Node::empty);
-        let mut next = first;
-        let mut inner = ArrayVec::<_, WIDTH>::new();
-        let mut children = ArrayVec::<_, WIDTH>::new();
-        for (child, choice) in slots {
-            let reference = if matches!(choice, Choice::Node) {
-                inner.push((child, next));
-                next += 1;
-                Child::node(next - 1)
-            } else {
-                self.emit_leaf(child)
-            };
-            children.push((self.binary.tree.nodes[child].bounds, reference));
-        }
-        self.out.nodes[place] = Node::new(&children);
-        for (child, place) in inner {
-            self.emit_node(child, place, level + 1);
-        }
-    }
-
-    /// Appends the binary nodes that fill up to `slots` slots, in tree order.
-    fn slots_of(&self, index: usize, mut slots: usize, out: &mut Slots) {
-        let plan = &self.plans[index];
-        while matches!(plan.choices[slots - 1], Choice::Fewer) {
-            slots -= 1;
-        }
-        match plan.choices[slots - 1] {
-            Choice::Split(k) => {
-                let [a, b] = self.binary.tree.children(index);
-                self.slots_of(a, usize::from(k), out);
-                self.slots_of(b, slots - usize::from(k), out);
-            }
-            choice => out.push((index, choice)),
-        }
-    }
-
-    fn emit_leaf(&mut self, index: usize) -> Child {
-        let node = &self.binary.tree.nodes[index];
-        let range = node.first as usize..(node.first + node.count) as usize;
-        let mut ids: ArrayVec<u32, WIDTH> = self.binary.tree.prims[range].iter().map(|p| p.id).collect();
-        ids.sort_unstable();
-        if self.binary.leaf_kind(index) == Some(Leaves::Ids) {
-            self.out.ids.extend_from_slice(&ids);
-            return Child::ids(self.out.ids.len() - ids.len(), ids.len());
-        }
-        let mut block = TriangleBlock::empty();
-        for (lane, &id) in ids.iter().enumerate() {
-            for (v, p) in self.binary.primitives.triangle(id as usize).iter().enumerate() {
-                for axis in 0..3 {
-                    block.vertices[3 * v + axis][lane] = p[axis];
-                }
-            }
-            block.ids[lane] = id;
-        }
-        self.out.blocks.push(block);
-        Child::block(self.out.blocks.len() - 1)
     }
 }

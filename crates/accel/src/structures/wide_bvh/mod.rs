@@ -5,6 +5,7 @@ mod binary;
 mod candidates;
 mod collapse;
 mod dispatch;
+mod emit;
 mod kernels;
 mod layout;
 mod ray_setup;
@@ -54,7 +55,7 @@ impl WideBvh {
         let tree = binary::build(primitives);
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds);
         let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
-        let arrays = collapse::collapse(&tree, primitives, leaves)
+        let arrays = emit::collapse(&tree, primitives, leaves)
             .ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
         Ok(Self {
             bounds,

@@ -74,7 +74,7 @@ fn trees_hold_what_they_are_built_over_on_any_number_of_threads() {
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let tree = pool.install(|| binary::build(&primitives));
-            collapse::collapse(&tree, &primitives, Leaves::Blocks).unwrap()
+            emit::collapse(&tree, &primitives, Leaves::Blocks).unwrap()
         };
         let one = run(1);
         for threads in [2, 7] {
