@@ -5,6 +5,7 @@
 //! `brute_force`, ties going to the lowest primitive id.
 
 pub mod bounds;
+mod laboratory;
 pub mod list;
 pub mod options;
 mod structure;
@@ -18,4 +19,4 @@ pub mod structures {
 
 pub use list::{DEFAULT_STRUCTURE, STRUCTURES, StructureInfo, build, find_structure};
 pub use options::{BuildError, BuildOptions, Kernel, SplitCandidates};
-pub use structure::{RayCounters, Structure, StructureSummary};
+pub use structure::{LeafRange, RayCounters, RefitError, Structure, StructureSummary};

@@ -1,10 +1,11 @@
 //! The list of acceleration structures: command line, help, documentation and tests are made from it.
 
+use crate::laboratory::{Laboratory, Leaves};
 use crate::options::{BuildError, BuildOptions};
 use crate::structure::Structure;
 use crate::structures::{brute_force, kd_tree, wide_bvh};
 use photinus_geometry::{MAX_PRIMITIVES, Primitives};
-use photinus_intersect::{LeafTester, METHODS, find_method};
+use photinus_intersect::{LeafTester, METHODS, MethodInfo, find_method};
 use std::sync::Arc;
 
 type Build = fn(Arc<Primitives>, &BuildOptions) -> Result<Box<dyn Structure>, BuildError>;
@@ -72,11 +73,25 @@ pub fn build(
     (info.build)(primitives, options)
 }
 
-/// The leaf tester of the method that `options` name.
-pub(crate) fn leaf_tester(primitives: &Primitives, options: &BuildOptions) -> Result<Box<dyn LeafTester>, BuildError> {
-    let method = find_method(&options.method).ok_or_else(|| BuildError::UnknownMethod {
+/// The method that `options` name.
+fn method(options: &BuildOptions) -> Result<&'static MethodInfo, BuildError> {
+    find_method(&options.method).ok_or_else(|| BuildError::UnknownMethod {
         name: options.method.clone(),
         known: METHODS.iter().map(|m| m.name).collect::<Vec<_>>().join(", "),
-    })?;
-    Ok((method.leaf_tester)(primitives))
+    })
+}
+
+/// The leaf tester of the method that `options` name.
+pub(crate) fn leaf_tester(primitives: &Primitives, options: &BuildOptions) -> Result<Box<dyn LeafTester>, BuildError> {
+    Ok((method(options)?.leaf_tester)(primitives))
+}
+
+/// A member of the laboratory with the tests of the method that `options` name.
+pub(crate) fn laboratory<L: Leaves>(
+    leaves: L,
+    primitives: &Primitives,
+    options: &BuildOptions,
+) -> Result<Box<dyn Structure>, BuildError> {
+    let retest = method(options)?.leaf_tester;
+    Ok(Box::new(Laboratory { leaves, tester: retest(primitives), retest }))
 }

@@ -1,7 +1,7 @@
 //! What every acceleration structure answers.
 
 use crate::structures::kd_tree::KdTree;
-use photinus_geometry::{Hit, Ray};
+use photinus_geometry::{Hit, Primitives, Ray};
 use photinus_intersect::LeafWork;
 use photinus_profile::{IntersectCounters, RayTicks, TraversalCounters};
 use serde::Serialize;
@@ -60,6 +60,32 @@ impl AddAssign for RayCounters {
     }
 }
 
+/// A leaf that a ray meets: so many references from a start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeafRange {
+    /// First place in [`Structure::refs`].
+    pub start: u32,
+    /// References.
+    pub count: u32,
+}
+
+/// Why a structure could not be fitted to primitives that moved.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RefitError {
+    /// No member of this kind can.
+    #[error("{structure} cannot be fitted to moved primitives; build it anew")]
+    Unsupported {
+        /// Name of the member.
+        structure: &'static str,
+    },
+    /// Other primitives than before, not the same ones elsewhere.
+    #[error("{structure} was built over other primitives than these; build it anew")]
+    OtherPrimitives {
+        /// Name of the member.
+        structure: &'static str,
+    },
+}
+
 /// A finished structure, described by walking it once.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StructureSummary {
@@ -101,7 +127,28 @@ pub trait Structure: Send + Sync {
     /// What was built.
     fn summary(&self) -> StructureSummary;
 
-    /// The kd-tree, where this is one: its cells can be drawn and its leaves listed along a ray.
+    /// Primitive ids of all leaves, one leaf after the other; `None` where leaves are no lists of ids.
+    fn refs(&self) -> Option<&[u32]> {
+        None
+    }
+
+    /// The leaves with primitives that a ray meets within its whole interval, in the order of their visits: what a unit
+    /// that tests leaves is fed with. `None` where leaves are no lists of ids.
+    fn leaves(&self, ray: &Ray) -> Option<Vec<LeafRange>> {
+        let _ = ray;
+        None
+    }
+
+    /// Fits the structure to primitives that moved: as many triangles and spheres as before, and the same indices.
+    ///
+    /// # Errors
+    /// The structure has to be built anew; it is as it was.
+    fn refit(&mut self, primitives: &Primitives) -> Result<(), RefitError> {
+        let _ = primitives;
+        Err(RefitError::Unsupported { structure: self.summary().name })
+    }
+
+    /// The kd-tree, where this is one: its cells can be drawn.
     fn as_kd_tree(&self) -> Option<&KdTree> {
         None
     }

@@ -1,7 +1,8 @@
 //! A kd-tree as a picture, after Figure 11 of the thesis: split planes across x red, across y green, across z blue,
 //! leaves white, seen from any direction.
 
-use photinus_accel::structures::kd_tree::{KdCell, KdCellKind, KdTree, LeafRange};
+use photinus_accel::LeafRange;
+use photinus_accel::structures::kd_tree::{KdCell, KdCellKind, KdTree};
 use photinus_geometry::{Aabb, Vec3};
 use std::collections::HashSet;
 use std::fmt::Write;

@@ -8,15 +8,14 @@ mod build;
 mod traverse;
 
 use crate::bounds::{half_area_f64, size_f64};
-use crate::list::leaf_tester;
+use crate::laboratory::{LeafVisit, Leaves};
+use crate::list::laboratory;
 use crate::options::{BuildError, BuildOptions};
-use crate::structure::{RayCounters, Structure, StructureSummary, stamped, stamped_batch};
+use crate::structure::{LeafRange, Structure, StructureSummary};
 use build::{Built, Rule};
-use photinus_geometry::{Aabb, Hit, Primitives, Ray};
-use photinus_intersect::LeafTester;
+use photinus_geometry::{Aabb, Primitives, Ray};
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
-use traverse::LeafVisit;
 
 /// The name on the command line.
 pub const NAME: &str = "kd-tree";
@@ -54,15 +53,6 @@ impl KdNode {
     }
 }
 
-/// A leaf that a ray pierces: so many references from a start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LeafRange {
-    /// First place in [`KdTree::refs`].
-    pub start: u32,
-    /// References.
-    pub count: u32,
-}
-
 /// A node of the tree with its cell, as [`KdTree::visit_cells`] hands it out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KdCell {
@@ -94,24 +84,23 @@ pub struct KdTree {
     nodes: Vec<KdNode>,
     refs: Vec<u32>,
     cost_ratio: f64,
-    tester: Box<dyn LeafTester>,
 }
 
 /// See [`crate::build`].
 pub fn build(primitives: Arc<Primitives>, options: &BuildOptions) -> Result<Box<dyn Structure>, BuildError> {
-    Ok(Box::new(KdTree::new(&primitives, options)?))
+    let leaves = KdTree::new(&primitives, options)?;
+    laboratory(leaves, &primitives, options)
 }
 
 impl KdTree {
     /// Builds the tree over primitives whose vertex indices are in range.
     ///
     /// # Errors
-    /// An unknown method, a cost that is negative or not finite, a triangle cost of zero, no candidates.
+    /// A cost that is negative or not finite, a triangle cost of zero, no candidates.
     pub fn new(primitives: &Primitives, options: &BuildOptions) -> Result<Self, BuildError> {
         let rule = rule(options)?;
-        let tester = leaf_tester(primitives, options)?;
         let (built, bounds) = build::build(primitives, rule);
-        let mut tree = Self { bounds, nodes: Vec::new(), refs: Vec::new(), cost_ratio: rule.cost_ratio, tester };
+        let mut tree = Self { bounds, nodes: Vec::new(), refs: Vec::new(), cost_ratio: rule.cost_ratio };
         tree.flatten(built);
         Ok(tree)
     }
@@ -144,20 +133,6 @@ impl KdTree {
         self.bounds
     }
 
-    /// The leaves with primitives that a ray pierces within its interval, front to back.
-    pub fn leaves(&self, ray: &Ray) -> Vec<LeafRange> {
-        let mut out = Vec::new();
-        self.walk(
-            ray,
-            || {},
-            |visit| {
-                out.push(LeafRange { start: visit.refs.start as u32, count: visit.refs.len() as u32 });
-                ControlFlow::Continue(())
-            },
-        );
-        out
-    }
-
     /// Hands out every node with its cell, parents before children and below before above.
     pub fn visit_cells(&self, mut visit: impl FnMut(&KdCell)) {
         let mut waiting = vec![(0, 0, self.bounds)];
@@ -177,63 +152,6 @@ impl KdTree {
             };
             visit(&KdCell { depth, bounds, kind });
         }
-    }
-
-    /// The nearest hit of a ray; counts the work where `COUNT` says so.
-    #[inline(always)]
-    fn closest<const COUNT: bool>(&self, ray: &Ray, counters: &mut RayCounters) -> Hit {
-        let mut best = Hit::MISS;
-        let mut nodes = 0;
-        let mut leaf = |LeafVisit { refs, exit }| {
-            let ids = &self.refs[refs];
-            let work = stamped::<COUNT, _>(&mut counters.ticks, || self.tester.closest_hit(ray, ids, &mut best));
-            if COUNT {
-                counters.add_leaf(ids.len(), work);
-            }
-            if best.t < exit { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        self.walk(ray, || nodes += u64::from(COUNT), &mut leaf);
-        counters.traversal.nodes_visited += nodes;
-        best
-    }
-
-    /// Whether a ray hits anything; counts the work where `COUNT` says so.
-    #[inline(always)]
-    fn any<const COUNT: bool>(&self, ray: &Ray, counters: &mut RayCounters) -> bool {
-        let mut found = false;
-        let mut nodes = 0;
-        let mut leaf = |LeafVisit { refs, .. }| {
-            let ids = &self.refs[refs];
-            let (any, work) = stamped::<COUNT, _>(&mut counters.ticks, || self.tester.any_hit(ray, ids));
-            if COUNT {
-                counters.add_leaf(ids.len(), work);
-            }
-            found = any;
-            if any { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        };
-        self.walk(ray, || nodes += u64::from(COUNT), &mut leaf);
-        counters.traversal.nodes_visited += nodes;
-        found
-    }
-
-    fn closest_batch<const COUNT: bool>(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
-        assert_eq!(rays.len(), hits.len());
-        counters.traversal.rays += rays.len() as u64;
-        stamped_batch::<COUNT>(counters, |counters| {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.closest::<COUNT>(ray, counters);
-            }
-        });
-    }
-
-    fn any_batch<const COUNT: bool>(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
-        assert_eq!(rays.len(), occluded.len());
-        counters.traversal.rays += rays.len() as u64;
-        stamped_batch::<COUNT>(counters, |counters| {
-            for (ray, hit) in rays.iter().zip(occluded) {
-                *hit = self.any::<COUNT>(ray, counters);
-            }
-        });
     }
 }
 
@@ -255,21 +173,13 @@ fn rule(options: &BuildOptions) -> Result<Rule, BuildError> {
     Ok(Rule { cost_ratio, candidates: options.candidates, count: options.candidate_count as usize })
 }
 
-impl Structure for KdTree {
-    fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.closest_batch::<false>(rays, hits, &mut RayCounters::default());
+impl Leaves for KdTree {
+    fn refs(&self) -> &[u32] {
+        &self.refs
     }
 
-    fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {
-        self.any_batch::<false>(rays, occluded, &mut RayCounters::default());
-    }
-
-    fn closest_hit_counted(&self, rays: &[Ray], hits: &mut [Hit], counters: &mut RayCounters) {
-        self.closest_batch::<true>(rays, hits, counters);
-    }
-
-    fn any_hit_counted(&self, rays: &[Ray], occluded: &mut [bool], counters: &mut RayCounters) {
-        self.any_batch::<true>(rays, occluded, counters);
+    fn walk(&self, ray: &Ray, node: impl FnMut(), leaf: impl FnMut(LeafVisit) -> ControlFlow<(), f32>) {
+        self.walk_cells(ray, node, leaf);
     }
 
     fn as_kd_tree(&self) -> Option<&KdTree> {
@@ -281,7 +191,7 @@ impl Structure for KdTree {
         let mut out = StructureSummary {
             name: NAME,
             references: self.refs.len() as u64,
-            bytes: (size_of_val(&self.nodes[..]) + size_of_val(&self.refs[..])) as u64 + self.tester.bytes(),
+            bytes: (size_of_val(&self.nodes[..]) + size_of_val(&self.refs[..])) as u64,
             ..StructureSummary::default()
         };
         let half_area = |b: &Aabb| half_area_f64(size_f64(b));

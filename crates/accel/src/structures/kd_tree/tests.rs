@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::options::SplitCandidates;
-use photinus_geometry::Vec3;
+use photinus_geometry::{Hit, Vec3};
 use photinus_num::{Sampler, StreamKind};
 
 fn soup(seed: u64, count: u32) -> Primitives {
@@ -120,13 +120,14 @@ fn free_nodes_end_all_the_same() {
 fn leaves_come_front_to_back_and_hold_the_hit() {
     let primitives = soup(7, 2000);
     let tree = KdTree::new(&primitives, &BuildOptions::default()).unwrap();
+    let built = build(Arc::new(primitives.clone()), &BuildOptions::default()).unwrap();
     let mut hits = 0;
     for i in 0..500 {
         let mut s = Sampler::new(8, StreamKind::Test, 0, i);
         let mut vec3 = || Vec3::new(s.next_1d(), s.next_1d(), s.next_1d());
         let (a, b) = (vec3(), vec3());
         let ray = Ray::new(a, b - a);
-        let leaves = tree.leaves(&ray);
+        let leaves = built.leaves(&ray).unwrap();
         let mut entries = Vec::new();
         for leaf in &leaves {
             tree.visit_cells(|cell| {
@@ -139,7 +140,9 @@ fn leaves_come_front_to_back_and_hold_the_hit() {
         }
         assert_eq!(entries.len(), leaves.len());
         assert!(entries.is_sorted_by(|x, y| x <= &(y + 1e-4)), "{entries:?}");
-        let hit = tree.closest::<true>(&ray, &mut RayCounters::default());
+        let mut hit = [Hit::MISS];
+        built.closest_hit(&[ray], &mut hit);
+        let [hit] = hit;
         if hit.is_hit() {
             hits += 1;
             let holds = |l: &LeafRange| tree.refs[l.start as usize..(l.start + l.count) as usize].contains(&hit.prim);

@@ -9,8 +9,9 @@
 use super::build::MAX_DEPTH;
 use super::{KdTree, Unpacked};
 use crate::bounds::SLAB_SLACK;
-use photinus_geometry::{Ray, Vec3};
-use std::ops::{ControlFlow, Range};
+use crate::laboratory::{LeafVisit, can_hit};
+use photinus_geometry::Ray;
+use std::ops::ControlFlow;
 
 /// Relative width of the zone around a plane that counts as on both sides: twice what a hit needs.
 const SLACK: f32 = 2.0 * SLAB_SLACK;
@@ -23,20 +24,11 @@ struct Waiting {
     leave: f32,
 }
 
-/// A leaf on the way.
-pub struct LeafVisit {
-    /// Places of the leaf's references.
-    pub refs: Range<usize>,
-    /// No later leaf holds a hit nearer than this that is not in this or an earlier one.
-    pub exit: f32,
-}
-
 impl KdTree {
     /// The parameters at which the ray enters and leaves the tree's bounds, widened by rounding and cut to the ray's
     /// interval; `None` where it misses them or can hit nothing.
     fn clip(&self, ray: &Ray) -> Option<(f32, f32)> {
-        let traceable = ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO;
-        if !traceable || !(ray.t_min <= ray.t_max) || self.bounds.is_empty() {
+        if !can_hit(ray) || self.bounds.is_empty() {
             return None;
         }
         let (mut enter, mut leave) = (ray.t_min, ray.t_max);
@@ -58,7 +50,12 @@ impl KdTree {
 
     /// Calls `node` at every interior node and `leaf` at every leaf with primitives, front to back, until it breaks.
     #[inline(always)]
-    pub(super) fn walk(&self, ray: &Ray, mut node: impl FnMut(), mut leaf: impl FnMut(LeafVisit) -> ControlFlow<()>) {
+    pub(super) fn walk_cells(
+        &self,
+        ray: &Ray,
+        mut node: impl FnMut(),
+        mut leaf: impl FnMut(LeafVisit) -> ControlFlow<(), f32>,
+    ) {
         let Some((mut enter, mut leave)) = self.clip(ray) else { return };
         let (origin, dir) = (ray.origin.to_array(), ray.dir.to_array());
         let mut stack = [Waiting { node: 0, enter, leave }; MAX_DEPTH as usize];
