@@ -123,6 +123,19 @@ impl Path {
     }
 }
 
+/// Edge of a block in pixels: camera rays that follow each other run through sixteen pixels side by side.
+const BLOCK: u32 = 4;
+
+/// The pixels of a tile in blocks, row by row in each.
+fn blocks(width: u32, height: u32) -> impl Iterator<Item = u32> {
+    let rows = move |y0: u32| y0..(y0 + BLOCK).min(height);
+    let columns = move |x0: u32| x0..(x0 + BLOCK).min(width);
+    let corners = (0..height)
+        .step_by(BLOCK as usize)
+        .flat_map(move |y0| (0..width).step_by(BLOCK as usize).map(move |x0| (x0, y0)));
+    corners.flat_map(move |(x0, y0)| rows(y0).flat_map(move |y| columns(x0).map(move |x| y * width + x)))
+}
+
 /// Lists that tiles hand on to one another.
 #[derive(Default)]
 struct Buffers {
@@ -200,8 +213,7 @@ impl EyePass<'_> {
     /// The paths of a sample of a tile.
     pub(crate) fn camera_paths<'t>(&'t self, sample: u32, tile: &'t mut Tile) -> impl Iterator<Item = Path> + 't {
         tile.sample = sample;
-        let count = tile.place[2] * tile.place[3];
-        (0..count).map(move |pixel| {
+        blocks(tile.place[2], tile.place[3]).map(move |pixel| {
             let [x, y] = self.film_pixel(tile.place, pixel);
             let mut sampler = self.camera_sampler([x, y], sample);
             let ([dx, dy], weight) = self.film_offset(sampler.next_2d());

@@ -1,4 +1,4 @@
-//! `unsafe` is for SIMD kernels, the processor's clock and settings that only the C library has: each file that holds any
+//! `unsafe` is for SIMD kernels, the processor's clock, others' libraries and settings that only the C library has: each file that holds any
 //! is listed with the test that compares a kernel with its scalar twin, or that sees what the code does.
 
 use super::Finding;
@@ -19,10 +19,14 @@ const GRID_TWIN_TEST: (&str, &str) =
 const WIDE_TWIN_TEST: (&str, &str) =
     ("crates/accel/src/structures/wide_bvh/tests.rs", "all_kernels_give_the_same_bits_and_the_same_work");
 
+/// What another's library reads and writes lies where its headers say.
+const EMBREE_TEST: (&str, &str) = ("benches/peers/rays/src/engines/embree.rs", "records_lie_as_in_the_headers");
+
 /// Without the setting memory grows from pass to pass.
 const ALLOCATOR_TEST: (&str, &str) = ("crates/cli/tests/memory.rs", "memory_stays_as_predicted_over_many_passes");
 
 const KERNELS: &[Kernel] = &[
+    Kernel { path: "benches/peers/rays/src/engines/embree.rs", twin_test: EMBREE_TEST },
     Kernel { path: "crates/cli/src/allocator.rs", twin_test: ALLOCATOR_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },

@@ -54,11 +54,17 @@ impl WideBvh {
     pub(super) fn trace_all<const ANY: bool, const COUNT: bool>(
         &self,
         rays: &[Ray],
-        set: impl FnMut(usize, Hit),
+        mut set: impl FnMut(usize, Hit),
         counters: &mut RayCounters,
     ) {
+        if COUNT {
+            counters.traversal.rays += rays.len() as u64;
+        }
         match self.kernel {
-            Chosen::Scalar => self.trace::<_, ANY, COUNT>(Scalar, rays, set, counters),
+            Chosen::Scalar => {
+                let done = self.trace_packets::<_, ANY, COUNT>(Scalar, rays, &mut set, counters);
+                self.trace::<_, ANY, COUNT>(Scalar, rays, done, set, counters);
+            }
             #[cfg(target_arch = "x86_64")]
             Chosen::Avx2(kernel) => kernel.trace::<ANY, COUNT>(self, rays, set, counters),
             #[cfg(target_arch = "x86_64")]

@@ -8,6 +8,8 @@ mod dispatch;
 mod emit;
 mod kernels;
 mod layout;
+mod packet;
+mod packet_walk;
 mod ray_setup;
 mod summary;
 mod traverse;

@@ -1,5 +1,6 @@
 //! The kernels against their scalar twin, and the built tree against its invariants.
 
+use super::packet::PACKET;
 use super::*;
 use crate::options::Kernel;
 use photinus_geometry::{Sphere, Vec3};
@@ -46,7 +47,7 @@ fn kernels() -> Vec<Kernel> {
 fn all_kernels_give_the_same_bits_and_the_same_work() {
     for (seed, size) in [(1, 1.0), (2, 1e-20), (3, 1e15)] {
         let primitives = scene(seed, 2000, size);
-        let rays = rays(3000, size);
+        let rays = [rays(3000, size), grouped_rays(size)].concat();
         let run = |kernel| {
             let tree = build(primitives.clone(), &BuildOptions { kernel, ..BuildOptions::default() }).unwrap();
             let mut hits = vec![Hit::MISS; rays.len()];
@@ -97,5 +98,68 @@ fn boxes_hold_their_contents() {
         let summary = tree.summary();
         assert_eq!(summary.references, 3000 + 150);
         assert!(summary.depth <= 8 && summary.prims_per_leaf > 2.0, "{summary:?}");
+    }
+}
+
+/// Groups of sixteen rays side by side: a camera's, mirrored ones, shadows, and some that must not run together.
+fn grouped_rays(size: f32) -> Vec<Ray> {
+    let mut out = Vec::new();
+    for group in 0..600 {
+        let mut s = Sampler::new(77, StreamKind::Test, 1, group);
+        let mut vec3 = || Vec3::new(s.next_1d(), s.next_1d(), s.next_1d()) * 2.0 - 1.0;
+        let (origin, dir) = (vec3() * size, vec3());
+        for i in 0..PACKET as u32 {
+            let mut s = Sampler::new(78, StreamKind::Test, group.into(), i);
+            let mut vec3 = || Vec3::new(s.next_1d(), s.next_1d(), s.next_1d()) * 2.0 - 1.0;
+            let apart = if group % 3 == 0 { Vec3::ZERO } else { vec3() * (0.01 * size) };
+            let mut ray = Ray::new(origin + apart, dir + vec3() * 0.02);
+            ray.t_max = if group % 5 == 0 { size * s.next_1d() } else { f32::INFINITY };
+            match (group % 50, i) {
+                (10, 7) => ray.dir = -ray.dir,
+                (20, 3) => ray.dir.y = 0.0,
+                (30, 15) => ray.t_min = -1.0,
+                (40, 9) => ray.t_max = -1.0,
+                (45, 2) => ray.origin.x = f32::NAN,
+                (47, 8) => ray.dir.z = f32::INFINITY,
+                (49, 0) => ray.dir = Vec3::ZERO,
+                _ => {}
+            }
+            out.push(ray);
+        }
+    }
+    out
+}
+
+#[test]
+fn packets_find_what_single_rays_find() {
+    for (seed, size) in [(1, 1.0), (2, 1e-20), (3, 1e15)] {
+        let rays = grouped_rays(size);
+        let (mut alone, mut together) = (vec![Hit::MISS; rays.len()], vec![Hit::MISS; rays.len()]);
+        let tree = WideBvh::new(&scene(seed, 2000, size), &BuildOptions::default()).unwrap();
+        let counters = &mut RayCounters::default();
+        let set = |i: usize, hit| alone[i] = hit;
+        tree.trace::<_, false, false>(kernels::scalar::Scalar, &rays, Vec::new(), set, counters);
+        let set = &mut |i: usize, hit| together[i] = hit;
+        let done = tree.trace_packets::<_, false, false>(kernels::scalar::Scalar, &rays, set, counters);
+        let groups = done.iter().filter(|done| **done).count();
+        assert!((250..580).contains(&groups), "{groups} of 600 groups ran as packets, size {size}");
+        let mut hits = 0;
+        for (i, (a, b)) in alone.iter().zip(&together).enumerate() {
+            if done.get(i / PACKET) == Some(&true) {
+                assert_eq!(a, b, "ray {i} of seed {seed}: {:?}", rays[i]);
+                hits += usize::from(a.is_hit());
+            }
+        }
+        assert!(hits > 1000, "{hits}");
+        for kernel in [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512] {
+            let tree = build(scene(seed, 2000, size), &BuildOptions { kernel, ..BuildOptions::default() }).unwrap();
+            let (mut hits, mut counters) = (vec![Hit::MISS; rays.len()], RayCounters::default());
+            tree.closest_hit_counted(&rays, &mut hits, &mut counters);
+            assert_eq!(hits, alone, "{kernel:?}");
+            let mut occluded = vec![false; rays.len()];
+            tree.any_hit(&rays, &mut occluded);
+            assert!(occluded.iter().zip(&alone).all(|(any, hit)| *any == hit.is_hit()), "{kernel:?}");
+            assert_eq!(counters.traversal.rays, rays.len() as u64);
+        }
     }
 }

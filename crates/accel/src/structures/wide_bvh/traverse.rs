@@ -12,6 +12,7 @@ use super::WideBvh;
 use super::candidates::{Candidates, TOGETHER, choose};
 use super::kernels::{Kernel, Lanes, Reach};
 use super::layout::{BLOCK, Child, END, IDS, NODE, Node, TriangleBlock, WIDTH};
+use super::packet::PACKET;
 use super::ray_setup::RaySetup;
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
@@ -114,6 +115,8 @@ struct Walk<'a, K: Kernel, F> {
     tree: &'a WideBvh,
     kernel: K,
     rays: &'a [Ray],
+    /// Groups of rays that ran as packets, from the first.
+    done: Vec<bool>,
     next: usize,
     slots: [Slot; SLOTS],
     stacks: Stacks,
@@ -125,18 +128,16 @@ struct Walk<'a, K: Kernel, F> {
 }
 
 impl WideBvh {
-    /// The nearest hits, or with `ANY` any hits, of all rays, handed to `set`; counts the work where `COUNT` says so.
+    /// The nearest hits, or with `ANY` any hits, of all rays but those of groups that are done, handed to `set`; counts the work where `COUNT` says so.
     #[inline(always)]
     pub(in crate::structures::wide_bvh) fn trace<K: Kernel, const ANY: bool, const COUNT: bool>(
         &self,
         kernel: K,
         rays: &[Ray],
+        done: Vec<bool>,
         set: impl FnMut(usize, Hit),
         counters: &mut RayCounters,
     ) {
-        if COUNT {
-            counters.traversal.rays += rays.len() as u64;
-        }
         let states = States { slots: [[0; SLOTS]; 4], lens: [0; 4] };
         let stacks = Stacks::new(self.stack_places, SLOTS.min(rays.len()));
         let slots = [IDLE; SLOTS];
@@ -145,7 +146,7 @@ impl WideBvh {
         let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
         let ids = (self.ids.as_ptr().cast::<u8>(), size_of::<u32>());
         let places = [nodes, nodes, blocks, ids];
-        let mut walk = Walk { tree: self, kernel, rays, next: 0, slots, stacks, candidates, places, states, set };
+        let mut walk = Walk { tree: self, kernel, rays, done, next: 0, slots, stacks, candidates, places, states, set };
         // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
         // What is set up once for a batch stands before them: the batches that are counted are shorter than most.
         let begun = if COUNT { ticks() } else { 0 };
@@ -184,6 +185,10 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
     #[inline(always)]
     fn fill(&mut self, index: u8) {
         while self.next < self.rays.len() {
+            if self.next.is_multiple_of(PACKET) && self.done.get(self.next / PACKET) == Some(&true) {
+                self.next += PACKET;
+                continue;
+            }
             let i = self.next;
             self.next += 1;
             let slot = &mut self.slots[usize::from(index) % SLOTS];

@@ -5,6 +5,7 @@ use super::{Kernel, Lanes, Reach};
 use crate::structure::RayCounters;
 use crate::structures::wide_bvh::WideBvh;
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
+use crate::structures::wide_bvh::packet::{ByRay, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
@@ -26,17 +27,31 @@ impl Avx512 {
         has.then_some(Self(()))
     }
 
-    /// [`WideBvh::trace`] compiled for this instruction set.
+    /// [`WideBvh::trace_packets`] and [`WideBvh::trace`] compiled for this instruction set.
     pub fn trace<const ANY: bool, const COUNT: bool>(
         self,
         tree: &WideBvh,
         rays: &[Ray],
-        set: impl FnMut(usize, Hit),
+        mut set: impl FnMut(usize, Hit),
         counters: &mut RayCounters,
     ) {
-        // SAFETY: `self` proves that the machine has the features that the function is compiled for.
-        unsafe { trace::<ANY, COUNT>(self, tree, rays, set, counters) }
+        // SAFETY: `self` proves that the machine has the features that the functions are compiled for.
+        unsafe {
+            let done = trace_packets::<ANY, COUNT>(self, tree, rays, &mut set, counters);
+            trace::<ANY, COUNT>(self, tree, rays, done, set, counters);
+        }
     }
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,bmi1,bmi2,popcnt,lzcnt")]
+fn trace_packets<const ANY: bool, const COUNT: bool>(
+    kernel: Avx512,
+    tree: &WideBvh,
+    rays: &[Ray],
+    set: &mut impl FnMut(usize, Hit),
+    counters: &mut RayCounters,
+) -> Vec<bool> {
+    tree.trace_packets::<_, ANY, COUNT>(kernel, rays, set, counters)
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,bmi1,bmi2,popcnt,lzcnt")]
@@ -44,10 +59,11 @@ fn trace<const ANY: bool, const COUNT: bool>(
     kernel: Avx512,
     tree: &WideBvh,
     rays: &[Ray],
+    done: Vec<bool>,
     set: impl FnMut(usize, Hit),
     counters: &mut RayCounters,
 ) {
-    tree.trace::<_, ANY, COUNT>(kernel, rays, set, counters);
+    tree.trace::<_, ANY, COUNT>(kernel, rays, done, set, counters);
 }
 
 impl Kernel for Avx512 {
@@ -134,6 +150,113 @@ impl Kernel for Avx512 {
             mask
         };
         (entries, children, mask)
+    }
+
+    #[inline(always)]
+    fn beam(self, packet: &Packet, node: &Node, out: &mut [u32; WIDTH]) -> usize {
+        let beam = &packet.beam;
+        // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads and stores are of eight words each, and
+        // `near` and `far` are places of bounds below 6 x 8.
+        unsafe {
+            let spread = |x: f32| _mm256_set1_ps(x);
+            let bounds = node.bounds.as_ptr().cast::<f32>();
+            let mut entry = spread(beam.t_min);
+            let mut exit = spread(beam.t_max);
+            for axis in 0..3 {
+                let near = _mm256_loadu_ps(bounds.add(packet.near[axis] as usize));
+                let far = _mm256_loadu_ps(bounds.add(packet.far[axis] as usize));
+                let enter = _mm256_sub_ps(near, spread(beam.near_origin[axis]));
+                let leave = _mm256_sub_ps(far, spread(beam.far_origin[axis]));
+                let [a, b] = beam.near_inv[axis].map(|inv| _mm256_mul_ps(enter, spread(inv)));
+                entry = _mm256_max_ps(_mm256_min_ps(a, b), entry);
+                let [a, b] = beam.far_inv[axis].map(|inv| _mm256_mul_ps(leave, spread(inv)));
+                exit = _mm256_min_ps(_mm256_max_ps(a, b), exit);
+            }
+            // The order of slots, each index in its own lane; the permutations look at the lowest three bits.
+            let order = _mm256_set1_epi32(node.orders[packet.octant % 8] as i32);
+            let order = _mm256_srlv_epi32(order, _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
+            let entry = _mm256_permutevar8x32_ps(entry, order);
+            let exit = _mm256_permutevar8x32_ps(exit, order);
+            let mask = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(entry, exit);
+            _mm256_storeu_si256(out.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, order));
+            mask.count_ones() as usize
+        }
+    }
+
+    #[inline(always)]
+    fn packet_box(self, packet: &Packet, node: &Node, slot: usize, entries: &mut ByRay) -> u16 {
+        // SAFETY: `self` proves that the machine has AVX-512F; the loads and stores are of sixteen words each, `near` and
+        // `far` are the first of eight bounds below 6 x 8, and a slot is below 8.
+        unsafe {
+            let load = |x: &ByRay| _mm512_loadu_ps(x.as_ptr());
+            let bounds = node.bounds.as_ptr().cast::<f32>().add(slot % WIDTH);
+            let mut entry = load(&packet.t_min);
+            let mut exit = load(&packet.t_max);
+            for axis in 0..3 {
+                let near = _mm512_set1_ps(*bounds.add(packet.near[axis] as usize));
+                let far = _mm512_set1_ps(*bounds.add(packet.far[axis] as usize));
+                let origin = load(&packet.origin[axis]);
+                let t_near = _mm512_mul_ps(_mm512_sub_ps(near, origin), load(&packet.near_inv[axis]));
+                let t_far = _mm512_mul_ps(_mm512_sub_ps(far, origin), load(&packet.far_inv[axis]));
+                entry = _mm512_max_ps(t_near, entry);
+                exit = _mm512_min_ps(t_far, exit);
+            }
+            _mm512_storeu_ps(entries.as_mut_ptr(), entry);
+            _mm512_cmp_ps_mask::<_CMP_LE_OQ>(entry, exit)
+        }
+    }
+
+    #[inline(always)]
+    fn packet_triangle(self, packet: &Packet, block: &TriangleBlock, lane: usize, sheared: &mut [ByRay; 9]) -> u16 {
+        // SAFETY: `self` proves that the machine has AVX-512F; the loads are of sixteen words each, axes are below 3, and a
+        // lane is below 8.
+        unsafe {
+            let load = |x: &ByRay| _mm512_loadu_ps(x.as_ptr());
+            let [kx, ky, kz] = packet.axes.map(|k| k % 3);
+            let origin = [load(&packet.origin[kx]), load(&packet.origin[ky]), load(&packet.origin[kz])];
+            let shear_by = [load(&packet.shear[0]), load(&packet.shear[1])];
+            let vertices = block.vertices.as_ptr().cast::<f32>().add(lane % WIDTH);
+            let at = |v: usize, k: usize| _mm512_set1_ps(*vertices.add((3 * v + k) * WIDTH));
+            let mut x = [_mm512_setzero_ps(); 3];
+            let mut y = x;
+            let mut z = x;
+            for v in 0..3 {
+                z[v] = _mm512_sub_ps(at(v, kz), origin[2]);
+                let shear = |k: usize, i: usize| {
+                    _mm512_sub_ps(_mm512_sub_ps(at(v, k), origin[i]), _mm512_mul_ps(shear_by[i], z[v]))
+                };
+                x[v] = shear(kx, 0);
+                y[v] = shear(ky, 1);
+                for (axis, row) in [x[v], y[v], z[v]].into_iter().enumerate() {
+                    _mm512_storeu_ps(sheared[3 * v + axis].as_mut_ptr(), row);
+                }
+            }
+            let edge = |i: usize, j: usize| _mm512_sub_ps(_mm512_mul_ps(x[i], y[j]), _mm512_mul_ps(y[i], x[j]));
+            let edges = [edge(2, 1), edge(0, 2), edge(1, 0)];
+            let zero = _mm512_setzero_ps();
+            let least = _mm512_min_ps(_mm512_min_ps(z[0], z[1]), z[2]);
+            let most = _mm512_max_ps(_mm512_max_ps(z[0], z[1]), z[2]);
+            let below = edges.map(|e| _mm512_cmp_ps_mask::<_CMP_LT_OQ>(e, zero));
+            let above = edges.map(|e| _mm512_cmp_ps_mask::<_CMP_GT_OQ>(e, zero));
+            let beyond = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(least, load(&packet.reach_high))
+                | _mm512_cmp_ps_mask::<_CMP_LT_OQ>(most, load(&packet.reach_low));
+            !beyond & !((below[0] | below[1] | below[2]) & (above[0] | above[1] | above[2]))
+        }
+    }
+
+    #[inline(always)]
+    fn extremes(self, x: &ByRay) -> [f32; 2] {
+        // SAFETY: `self` proves that the machine has AVX-512F; the load is of sixteen words.
+        unsafe {
+            let x = _mm512_loadu_ps(x.as_ptr());
+            [_mm512_reduce_min_ps(x), _mm512_reduce_max_ps(x)]
+        }
+    }
+
+    #[inline(always)]
+    fn reached(self, entries: &ByRay, t_max: &ByRay) -> u16 {
+        // SAFETY: `self` proves that the machine has AVX-512F; the loads are of sixteen words each.
+        unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(_mm512_loadu_ps(entries.as_ptr()), _mm512_loadu_ps(t_max.as_ptr())) }
     }
 
     #[inline(always)]

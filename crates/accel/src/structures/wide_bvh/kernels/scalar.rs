@@ -2,6 +2,7 @@
 
 use super::{Kernel, Lanes, Reach};
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
+use crate::structures::wide_bvh::packet::{ByRay, PACKET, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::NO_HIT;
 
@@ -84,6 +85,81 @@ impl Kernel for Scalar {
             count += usize::from(is_kept);
         }
         (entries, children, mask)
+    }
+
+    #[inline(always)]
+    fn beam(self, packet: &Packet, node: &Node, out: &mut [u32; WIDTH]) -> usize {
+        let beam = &packet.beam;
+        let mut entries = [beam.t_min; WIDTH];
+        let mut exits = [beam.t_max; WIDTH];
+        for axis in 0..3 {
+            let near = &node.bounds[packet.near[axis] as usize / WIDTH];
+            let far = &node.bounds[packet.far[axis] as usize / WIDTH];
+            let ([near_a, near_b], [far_a, far_b]) = (beam.near_inv[axis], beam.far_inv[axis]);
+            for lane in 0..WIDTH {
+                let (enter, leave) = (near[lane] - beam.near_origin[axis], far[lane] - beam.far_origin[axis]);
+                entries[lane] = max(min(enter * near_a, enter * near_b), entries[lane]);
+                exits[lane] = min(max(leave * far_a, leave * far_b), exits[lane]);
+            }
+        }
+        let order = node.orders[packet.octant % 8];
+        let mut count = 0;
+        for i in 0..WIDTH {
+            let lane = (order >> (3 * i)) as usize % WIDTH;
+            out[count % WIDTH] = lane as u32;
+            count += usize::from(entries[lane] <= exits[lane]);
+        }
+        count
+    }
+
+    #[inline(always)]
+    fn packet_box(self, packet: &Packet, node: &Node, slot: usize, entries: &mut ByRay) -> u16 {
+        let (mut entry, mut exit) = (packet.t_min, packet.t_max);
+        for axis in 0..3 {
+            let near = node.bounds[packet.near[axis] as usize / WIDTH][slot];
+            let far = node.bounds[packet.far[axis] as usize / WIDTH][slot];
+            for i in 0..PACKET {
+                entry[i] = max((near - packet.origin[axis][i]) * packet.near_inv[axis][i], entry[i]);
+                exit[i] = min((far - packet.origin[axis][i]) * packet.far_inv[axis][i], exit[i]);
+            }
+        }
+        *entries = entry;
+        self.reached(&entry, &exit)
+    }
+
+    #[inline(always)]
+    fn packet_triangle(self, packet: &Packet, block: &TriangleBlock, lane: usize, sheared: &mut [ByRay; 9]) -> u16 {
+        let [kx, ky, kz] = packet.axes;
+        let mut mask = 0;
+        for i in 0..PACKET {
+            let vertex = |v: usize| {
+                let at = |k: usize| block.vertices[3 * v + k][lane] - packet.origin[k][i];
+                let z = at(kz);
+                [at(kx) - packet.shear[0][i] * z, at(ky) - packet.shear[1][i] * z, z]
+            };
+            let v = [vertex(0), vertex(1), vertex(2)];
+            for (row, value) in sheared.iter_mut().zip(v.as_flattened()) {
+                row[i] = *value;
+            }
+            let edge = |i: usize, j: usize| v[i][0] * v[j][1] - v[i][1] * v[j][0];
+            let edges = [edge(2, 1), edge(0, 2), edge(1, 0)];
+            let straddles = edges.iter().any(|e| *e < 0.0) && edges.iter().any(|e| *e > 0.0);
+            let least = min(min(v[0][2], v[1][2]), v[2][2]);
+            let most = max(max(v[0][2], v[1][2]), v[2][2]);
+            let beyond = least > packet.reach_high[i] || most < packet.reach_low[i];
+            mask |= u16::from(!beyond && !straddles) << i;
+        }
+        mask
+    }
+
+    #[inline(always)]
+    fn extremes(self, x: &ByRay) -> [f32; 2] {
+        x.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[least, greatest], x| [min(*x, least), max(*x, greatest)])
+    }
+
+    #[inline(always)]
+    fn reached(self, entries: &ByRay, t_max: &ByRay) -> u16 {
+        (0..PACKET).fold(0, |mask, i| mask | u16::from(entries[i] <= t_max[i]) << i)
     }
 
     #[inline(always)]

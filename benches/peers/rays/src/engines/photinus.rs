@@ -1,0 +1,33 @@
+//! Our default structure, asked in batches as the renderer asks.
+
+use super::Engine;
+use crate::Arguments;
+use crate::meshes::Mesh;
+use photinus_accel::{BuildOptions, DEFAULT_STRUCTURE, Structure};
+use photinus_geometry::{Hit, Ray};
+
+/// Rays of a batch: a tile's.
+const BATCH: usize = 1024;
+
+struct Ours(Box<dyn Structure>);
+
+/// Builds the tree.
+pub fn build(mesh: &Mesh, _: &Arguments) -> Result<Box<dyn Engine>, String> {
+    let structure = photinus_accel::build(DEFAULT_STRUCTURE, mesh.primitives.clone(), &BuildOptions::default());
+    Ok(Box::new(Ours(structure.map_err(|error| error.to_string())?)))
+}
+
+impl Engine for Ours {
+    fn closest(&self, rays: &[Ray], hits: &mut [Hit]) {
+        for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
+            self.0.closest_hit(rays, hits);
+        }
+    }
+
+    fn any(&self, rays: &[Ray], occluded: &mut [bool]) -> bool {
+        for (rays, occluded) in rays.chunks(BATCH).zip(occluded.chunks_mut(BATCH)) {
+            self.0.any_hit(rays, occluded);
+        }
+        true
+    }
+}
