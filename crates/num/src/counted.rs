@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Arithmetic operations of one computation, as Tables 11 and 12 of the thesis count them.
+/// Arithmetic operations of one computation, as Tables 11 and 12 of the thesis count them, and arc cosines apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OpCounts {
     /// Additions.
@@ -18,6 +18,22 @@ pub struct OpCounts {
     pub div: u64,
     /// Square roots.
     pub sqrt: u64,
+    /// Arc cosines, which the tables leave out.
+    pub acos: u64,
+}
+
+impl OpCounts {
+    /// The larger count of each operation: what a pipeline holds that can take either way.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            add: self.add.max(other.add),
+            sub: self.sub.max(other.sub),
+            mul: self.mul.max(other.mul),
+            div: self.div.max(other.div),
+            sqrt: self.sqrt.max(other.sqrt),
+            acos: self.acos.max(other.acos),
+        }
+    }
 }
 
 /// A double whose operations are counted in the [`Cell`] it was made with.
@@ -114,6 +130,13 @@ impl Scalar for Counted<'_> {
     fn abs(self) -> Self {
         Self { value: self.value.abs(), counts: self.counts }
     }
+    fn epsilon() -> Self {
+        Self::from_f64(f64::EPSILON)
+    }
+    fn acos(self) -> Self {
+        let counts = self.count(None, |c| c.acos += 1);
+        Self { value: libm::acos(self.value), counts }
+    }
 }
 
 #[cfg(test)]
@@ -127,6 +150,10 @@ mod tests {
         let b = Counted::new(3.0, &cell);
         let r = (a * b + a - Counted::one()) / b.sqrt();
         assert!((r.to_f64() - 7.0 / 3f64.sqrt()).abs() < 1e-15);
-        assert_eq!(cell.get(), OpCounts { add: 1, sub: 1, mul: 1, div: 1, sqrt: 1 });
+        let counts = OpCounts { add: 1, sub: 1, mul: 1, div: 1, sqrt: 1, acos: 0 };
+        assert_eq!(cell.get(), counts);
+        assert!((Counted::new(0.5, &cell).acos().to_f64() - std::f64::consts::FRAC_PI_3).abs() < 1e-15);
+        assert_eq!(cell.get(), OpCounts { acos: 1, ..counts });
+        assert_eq!(counts.max(OpCounts { add: 3, ..OpCounts::default() }), OpCounts { add: 3, ..counts });
     }
 }

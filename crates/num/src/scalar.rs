@@ -25,6 +25,12 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
+    /// The relative spacing of values near one: from one to the next larger value.
+    fn epsilon() -> Self;
+    /// Arc cosine in radians, by way of doubles: no number system in hardware has it.
+    fn acos(self) -> Self {
+        Self::from_f64(libm::acos(self.to_f64()))
+    }
     /// Zero.
     fn zero() -> Self {
         Self::from_f64(0.0)
@@ -52,6 +58,9 @@ impl Scalar for f32 {
     fn abs(self) -> Self {
         f32::abs(self)
     }
+    fn epsilon() -> Self {
+        f32::EPSILON
+    }
 }
 
 impl Scalar for f64 {
@@ -66,5 +75,8 @@ impl Scalar for f64 {
     }
     fn abs(self) -> Self {
         f64::abs(self)
+    }
+    fn epsilon() -> Self {
+        f64::EPSILON
     }
 }
