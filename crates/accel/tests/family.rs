@@ -88,22 +88,35 @@ fn brute_force_in_doubles_finds_the_same_triangles() {
     assert!(hits > 200, "{hits}");
 }
 
-/// The other methods round differently from box tests, so that a hit within rounding of a box's face may be lost: it
-/// may happen, but not to more than one ray in a thousand, and never away from an edge.
+/// The other methods round differently from box tests, so that a hit within rounding of a box's face may be lost. Most
+/// lose none here; Pluecker coordinates far from the origin of coordinates lose digits, and sums of angles take in points
+/// outside of their triangles and so of the boxes.
 #[test]
 fn members_agree_with_brute_force_over_every_method() {
     for method in METHODS {
         let options = BuildOptions { method: method.name.into(), ..BuildOptions::default() };
         let (mut rays, mut different) = (0, 0);
-        for scene in [random_soup(4, 1000, Vec3::ZERO, 1.0, 0.1), coplanar_grids(13), mixed_sizes(17), broken(16)] {
-            let oracle = closest(&*built("brute-force", &scene, &options), &scene.rays);
-            for info in STRUCTURES {
-                let hits = closest(&*built(info.name, &scene, &options), &scene.rays);
-                rays += hits.len();
-                different += hits.iter().zip(&oracle).filter(|(a, b)| a != b).count();
+        for seed in 0..4 {
+            for scene in [
+                random_soup(200 + seed, 1000, Vec3::ZERO, 1.0, 0.1),
+                coplanar_grids(300 + seed),
+                mixed_sizes(400 + seed),
+                broken(500 + seed),
+                slivers(600 + seed),
+            ] {
+                let oracle = closest(&*built("brute-force", &scene, &options), &scene.rays);
+                for info in STRUCTURES.iter().filter(|info| info.name != "brute-force") {
+                    let hits = closest(&*built(info.name, &scene, &options), &scene.rays);
+                    rays += hits.len();
+                    different += hits.iter().zip(&oracle).filter(|(a, b)| a != b).count();
+                }
             }
         }
-        let allowed = if method.watertight { 0 } else { rays / 1000 };
+        let allowed = match method.name {
+            "pluecker" => rays / 1000,
+            "angle-summation" => rays / 5000,
+            _ => 0,
+        };
         assert!(different <= allowed, "{}: {different} of {rays} rays differ", method.name);
     }
 }
@@ -249,7 +262,7 @@ fn names_are_found_and_errors_say_what_there_is() {
     for info in STRUCTURES {
         let options = BuildOptions { method: "magic".into(), ..BuildOptions::default() };
         let text = error(info.name, Primitives::default(), options);
-        assert!(text.contains("'magic'") && text.contains("woop, moller-trumbore, badouel"), "{text}");
+        assert!(text.contains("'magic'") && text.contains("woop, moller-trumbore, badouel, "), "{text}");
         let mut broken = soup([[Vec3::ZERO, Vec3::X, Vec3::Y]]);
         broken.triangles[0][1] = 3;
         let expected = BuildError::VertexOutOfRange { triangle: 0, vertex: 3, vertices: 3 };

@@ -62,7 +62,7 @@ fn gather() {
 
 #[test]
 fn direct_by_the_members_of_the_thesis() {
-    let members = ["--accel", "kd-tree", "--intersect", "badouel", "--search", "kd-balanced"];
+    let members = ["--accel", "kd-tree", "--intersect", "badouel-thesis", "--search", "kd-balanced"];
     let arguments = [&["--mode", "direct", "--photons", "5000", "--knn", "100"], &members[..]].concat();
     assert_cheap(&arguments, FEW_SAMPLES, MANY_SAMPLES);
 }

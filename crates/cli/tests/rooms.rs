@@ -84,7 +84,7 @@ const SETTINGS: &[&str] = &[
     "--accel",
     "kd-tree",
     "--intersect",
-    "badouel",
+    "badouel-thesis",
     "--search",
     "kd-balanced",
     "--quiet",

@@ -10,12 +10,23 @@ pub mod method;
 pub mod methods {
     //! The members: one ray-triangle method a file.
 
+    pub mod angle_summation;
+    pub mod arenberg;
     pub mod badouel;
+    pub mod badouel_hardware;
+    pub mod badouel_pivot;
+    pub mod badouel_thesis;
+    pub mod edge_crossings;
+    pub mod half_plane;
     pub mod moller_trumbore;
+    pub mod pluecker;
+    pub mod snyder_barr;
     pub mod woop;
 }
+pub mod plane;
+pub mod restructured;
 pub mod sphere;
 
 pub use leaf_tester::{LeafTester, LeafWork, sphere_tester};
 pub use list::{DEFAULT_METHOD, METHODS, MethodInfo, find_method};
-pub use method::{RtiMethod, TriangleHit, is_degenerate};
+pub use method::{GivenRay, RtiMethod, TriangleHit, is_degenerate};

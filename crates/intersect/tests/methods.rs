@@ -1,33 +1,13 @@
 //! What every ray-triangle method promises, checked on all of them against an independent oracle.
 
+mod common;
+
+use common::*;
 use photinus_geometry::{Hit, Primitives, Ray, Vec3};
+use photinus_intersect::methods::angle_summation::tolerance;
 use photinus_intersect::methods::woop::{Woop, finish, finish_lanes};
-use photinus_intersect::methods::{badouel::Badouel, moller_trumbore::MollerTrumbore};
-use photinus_intersect::{DEFAULT_METHOD, METHODS, MethodInfo, RtiMethod, TriangleHit, find_method};
-use photinus_num::{Counted, OpCounts, Sampler, Scalar, StreamKind};
-use std::cell::Cell;
-
-type Vertices<S> = [[S; 3]; 3];
-
-/// A call of one method over one scalar.
-type Test<S> = fn([S; 3], [S; 3], Vertices<S>, S, S) -> Option<TriangleHit<S>>;
-
-fn call<M: RtiMethod<S>, S: Scalar>(
-    origin: [S; 3],
-    dir: [S; 3],
-    vertices: Vertices<S>,
-    t_min: S,
-    t_max: S,
-) -> Option<TriangleHit<S>> {
-    M::intersect(&M::start(origin, dir)?, &M::prepare(vertices), t_min, t_max)
-}
-
-/// Every method by name; a member of the list that is missing here fails `the_list_is_covered`.
-fn all<S: Scalar>() -> [(&'static str, Test<S>); 3] {
-    [("woop", call::<Woop, S>), ("moller-trumbore", call::<MollerTrumbore, S>), ("badouel", call::<Badouel, S>)]
-}
-
-const INF: f32 = f32::INFINITY;
+use photinus_intersect::{DEFAULT_METHOD, METHODS, MethodInfo, find_method, is_degenerate};
+use photinus_num::{Sampler, Scalar, StreamKind};
 
 #[test]
 fn the_list_is_covered() {
@@ -38,32 +18,9 @@ fn the_list_is_covered() {
     assert!(find_method("moller").is_none());
 }
 
-/// Seeded numbers in [-1, 1).
-fn randoms<const N: usize>(seed: u64, index: u32) -> [f64; N] {
-    let mut s = Sampler::new(seed, StreamKind::Test, 0, index);
-    std::array::from_fn(|_| f64::from(s.next_1d()) * 2.0 - 1.0)
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-fn det(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
-    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-}
-
-/// Cramer's rule from determinants alone: t, alpha, beta, and the smallest weight of a vertex.
-fn oracle(origin: [f64; 3], dir: [f64; 3], [a, b, c]: Vertices<f64>) -> ([f64; 3], f64) {
-    let (e1, e2, s) = (sub(b, a), sub(c, a), sub(origin, a));
-    let minus = dir.map(|x| -x);
-    let whole = det(minus, e1, e2);
-    let (t, alpha, beta) = (det(s, e1, e2) / whole, det(minus, s, e2) / whole, det(minus, e1, s) / whole);
-    ([t, alpha, beta], alpha.min(beta).min(1.0 - alpha - beta))
-}
-
 #[test]
 fn random_rays_agree_with_determinants_in_f64_and_f32() {
-    let (mut hits, mut near_edges) = ([0; 2], 0);
+    let (mut hits, mut near_edges, mut within_tolerance) = ([0; 2], 0, 0);
     for i in 0..20_000 {
         let r = randoms::<15>(1, i).map(|x| f64::from(x as f32));
         let v = |k: usize| [r[k], r[k + 1], r[k + 2]];
@@ -85,6 +42,12 @@ fn random_rays_agree_with_determinants_in_f64_and_f32() {
         }
         let single = |v: [f64; 3]| v.map(|x| x as f32);
         for (name, test) in all::<f32>() {
+            // Sums of angles are compared with a tolerance, which takes more of a thin triangle's surroundings.
+            let point = std::array::from_fn(|k| origin[k] + t * dir[k]);
+            if name == "angle-summation" && !expected && turn_lacks(point, vertices) < 2.0 * tolerance::<f32>() {
+                within_tolerance += 1;
+                continue;
+            }
             let hit = test(single(origin), single(dir), vertices.map(single), 0.0, INF);
             assert_eq!(hit.is_some(), expected, "{name} in f32 on ray {i} of seed 1");
             if let Some(h) = hit {
@@ -94,61 +57,111 @@ fn random_rays_agree_with_determinants_in_f64_and_f32() {
             }
         }
     }
-    assert!(hits[0] > 1500 && hits[0] == hits[1] && near_edges < 1000, "{hits:?}, {near_edges}");
+    assert!(hits[0] > 6000 && hits[0] == hits[1] && near_edges < 1000, "{hits:?}, {near_edges}");
+    assert!(within_tolerance < 1000, "{within_tolerance}");
 }
 
-#[test]
-fn the_operations_are_those_of_the_tables() {
-    // Thesis, Table 11, prints 9 9 27 1 for Moller-Trumbore and 8 4 11 1 for Badouel; counted, Badouel's published
-    // form has 9 additions and 14 multiplications with three hit coordinates and three reciprocals.
-    let expected = [
-        ("woop", OpCounts { add: 0, sub: 18, mul: 12, div: 0, sqrt: 0 }),
-        ("moller-trumbore", OpCounts { add: 9, sub: 9, mul: 27, div: 1, sqrt: 0 }),
-        ("badouel", OpCounts { add: 9, sub: 4, mul: 14, div: 1, sqrt: 0 }),
-    ];
-    let cell = Cell::new(OpCounts::default());
-    let counted = |v: [f64; 3]| v.map(|x| Counted::new(x, &cell));
-    let origin = counted([0.1, 0.2, -1.0]);
-    let dir = counted([0.02, -0.03, 1.0]);
-    let vertices = [[-1.0, -1.0, 0.1], [2.0, -1.0, -0.1], [-1.0, 2.0, 0.3]].map(counted);
-    fn count<'a, M: RtiMethod<Counted<'a>>>(
-        cell: &Cell<OpCounts>,
-        origin: [Counted<'a>; 3],
-        dir: [Counted<'a>; 3],
-        vertices: Vertices<Counted<'a>>,
-    ) -> OpCounts {
-        let (ray, triangle) = (M::start(origin, dir).expect("a ray"), M::prepare(vertices));
-        cell.set(OpCounts::default());
-        let hit = M::intersect(&ray, &triangle, Counted::from_f64(0.0), Counted::from_f64(1e9));
-        assert!(hit.is_some());
-        cell.get()
-    }
-    let counts = [
-        ("woop", count::<Woop>(&cell, origin, dir, vertices)),
-        ("moller-trumbore", count::<MollerTrumbore>(&cell, origin, dir, vertices)),
-        ("badouel", count::<Badouel>(&cell, origin, dir, vertices)),
-    ];
-    assert_eq!(counts, expected);
+/// How much the angles under which `point` sees the edges lack of a full turn.
+fn turn_lacks(point: [f64; 3], vertices: Vertices<f64>) -> f64 {
+    let [a, b, c] = vertices.map(|v| unit(sub(v, point)));
+    let angle = |a: [f64; 3], b: [f64; 3]| libm::acos((0..3).map(|k| a[k] * b[k]).sum::<f64>().clamp(-1.0, 1.0));
+    std::f64::consts::TAU - angle(a, b) - angle(b, c) - angle(c, a)
 }
 
+/// The vector of length one.
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    v.map(|x| x / length)
+}
+
+/// A right triangle in powers of two, in each plane of the axes and in a slanted one: everything is exact in every method.
 #[test]
 fn edges_vertices_and_ends_of_the_interval_belong_to_the_hit() {
-    // A right triangle in z = 0 and powers of two: everything here is exact in every method.
-    let vertices = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    for (x, y) in [(0.0f32, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (0.25, 0.25)] {
-        for dz in [1.0f32, -1.0, 2.0] {
-            for (name, test) in all::<f32>() {
-                let origin = [x, y, -2.0 * dz];
-                let hit = test(origin, [0.0, 0.0, dz], vertices, 0.0, INF).unwrap_or_else(|| panic!("{name} {x} {y}"));
-                assert_eq!((hit.t, hit.alpha, hit.beta), (2.0, x, y), "{name}");
-                for (t_min, t_max, expected) in
-                    [(2.0, 3.0, true), (1.0, 2.0, true), (2.0, 2.0, true), (2.1, 3.0, false), (1.0, 1.9, false)]
-                {
-                    assert_eq!(test(origin, [0.0, 0.0, dz], vertices, t_min, t_max).is_some(), expected, "{name}");
+    exact_borders::<f32>();
+    exact_borders::<f64>();
+}
+
+fn exact_borders<S: Scalar>() {
+    let s = S::from_f64;
+    let on_border = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5), (0.25, 0.75), (0.25, 0.0)];
+    let outside = [(-0.25, 0.0), (1.25, 0.0), (0.0, -0.25), (0.0, 1.25), (0.75, 0.5), (1.5, -0.5), (-0.5, 1.5)];
+    for turn in 0..6 {
+        // The plane z = 0 with axes in all orders: half of them turn the triangle's face.
+        let place = |p: [f64; 3]| {
+            let mut p = if turn < 3 { p } else { [p[1], p[0], p[2]] };
+            p.rotate_right(turn % 3);
+            p.map(s)
+        };
+        for slant in [0.0, 1.0] {
+            let vertices = [place([0.0, 0.0, 0.0]), place([1.0, 0.0, slant]), place([0.0, 1.0, 0.0])];
+            for (i, (x, y)) in on_border.into_iter().chain([(0.25, 0.25)]).chain(outside).enumerate() {
+                for dz in [1.0, -1.0, 2.0] {
+                    let origin = place([x, y, slant * x - 2.0 * dz]);
+                    for (name, test) in all::<S>() {
+                        let closed = find_method(name).is_some_and(|m| m.closed);
+                        let expected = i <= on_border.len() && (closed || x + y < 1.0);
+                        let what = format!("{name} at {x} {y}, turn {turn}, slant {slant}");
+                        let hit = test(origin, place([0.0, 0.0, dz]), vertices, s(0.0), s(1e9));
+                        assert_eq!(hit.is_some(), expected, "{what}");
+                        let Some(hit) = hit else { continue };
+                        assert_eq!([hit.t, hit.alpha, hit.beta].map(S::to_f64), [2.0, x, y], "{what}");
+                        for (t_min, t_max, expected) in
+                            [(2.0, 3.0, true), (1.0, 2.0, true), (2.0, 2.0, true), (2.1, 3.0, false), (1.0, 1.9, false)]
+                        {
+                            let hit = test(origin, place([0.0, 0.0, dz]), vertices, s(t_min), s(t_max));
+                            assert_eq!(hit.is_some(), expected, "{what}");
+                        }
+                    }
                 }
             }
         }
     }
+}
+
+/// Numbers that hardly anything survives: no panic, and a hit is one within the interval, of a triangle that is none of
+/// the broken ones.
+#[test]
+fn hostile_numbers_are_survived() {
+    hostile::<f32>(&[0.0, -0.0, 1.0, -1.0, 0.5, 3.0, 1e-45, 1e-38, -1e-20, 1e19, 3e38, -3e38, f64::INFINITY, f64::NAN]);
+    hostile::<f64>(&[
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.5,
+        3.0,
+        5e-324,
+        1e-308,
+        -1e-160,
+        1e154,
+        1e308,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ]);
+}
+
+fn hostile<S: Scalar>(values: &[f64]) {
+    let mut hits = 0;
+    for i in 0..60_000 {
+        let mut sampler = Sampler::new(9, StreamKind::Test, 0, i);
+        // Two rays in three with friendly values only, so that some hit.
+        let common = if i % 3 == 0 { values.len() } else { 6 };
+        let mut draw = || S::from_f64(values[(sampler.next_1d() * common as f32) as usize]);
+        let mut vec3 = || [draw(), draw(), draw()];
+        let (origin, dir, vertices) = (vec3(), vec3(), [vec3(), vec3(), vec3()]);
+        let [t_min, t_max, _] = vec3();
+        for (t_min, t_max) in [(S::zero(), S::from_f64(f64::INFINITY)), (t_min, t_max)] {
+            for (name, test) in all::<S>() {
+                let Some(hit) = test(origin, dir, vertices, t_min, t_max) else { continue };
+                let what = format!("{name} on ray {i} of seed 9: {origin:?} {dir:?} {vertices:?}: {hit:?}");
+                assert!(hit.t >= t_min && hit.t <= t_max && hit.t.is_finite(), "{what}");
+                assert!(hit.alpha.is_finite() && hit.beta.is_finite(), "{what}");
+                assert!(!is_degenerate(&vertices), "{what}");
+                hits += 1;
+            }
+        }
+    }
+    assert!(hits > 1000, "{hits}");
 }
 
 #[test]
@@ -186,14 +199,6 @@ fn degenerate_triangles_and_impossible_rays_never_hit() {
     }
 }
 
-/// The published Badouel changes branches where u1 is exactly zero; a tiny u1 then ruins alpha.
-#[test]
-fn badouel_pivots() {
-    let vertices = [[0.0f32, 0.0, 0.0], [1e-7, 1.0, 0.0], [-1.0, 0.5, 0.0]];
-    let hit = call::<Badouel, f32>([-0.5, 0.5, -1.0], [0.0, 0.0, 1.0], vertices, 0.0, INF).expect("inside");
-    assert!((hit.alpha - 0.25).abs() < 1e-6 && (hit.beta - 0.5).abs() < 1e-6, "{hit:?}");
-}
-
 #[test]
 fn woop_works_at_every_scale() {
     for exponent in -40..=37 {
@@ -214,35 +219,6 @@ fn woop_works_at_every_scale() {
             assert!((f64::from(hit.t) - expected[0]).abs() < rounding, "{size} {scale}: {hit:?} {expected:?}");
         }
     }
-}
-
-/// A closed surface around its middle: a subdivided octahedron, bumpy, so that edges run in all directions.
-fn closed_mesh(offset: Vec3, size: f32) -> Primitives {
-    const N: usize = 12;
-    let mut out = Primitives::default();
-    for face in 0..8 {
-        let corner = |axis: usize| Vec3::AXES[axis] * if face >> axis & 1 == 1 { -1.0 } else { 1.0 };
-        let base = out.positions.len() as u32;
-        let place = |i: usize, j: usize| base + (i * (i + 1) / 2 + j) as u32;
-        for i in 0..=N {
-            for j in 0..=i {
-                // Of the octahedron's face: exact multiples, so that faces agree about their borders.
-                let (a, b, c) = ((N - i) as f32, (i - j) as f32, j as f32);
-                let p = (corner(0) * a + corner(1) * b + corner(2) * c) / N as f32;
-                let bumps = 1.0 + 0.3 * (p.x * p.y + p.z * p.z * p.y);
-                out.positions.push(p * bumps * size + offset);
-            }
-        }
-        for i in 0..N {
-            for j in 0..=i {
-                out.triangles.push([place(i, j), place(i + 1, j), place(i + 1, j + 1)]);
-                if j < i {
-                    out.triangles.push([place(i, j), place(i + 1, j + 1), place(i, j + 1)]);
-                }
-            }
-        }
-    }
-    out
 }
 
 /// Rays from inside a closed mesh at its vertices and edges; how many hit nothing.

@@ -4,7 +4,7 @@
 //! The two edge vectors are prepared. A hit costs 9 additions, 9 subtractions, 27 multiplications and 1 division
 //! (thesis, Table 11). Neighbours disagree about their shared edge by rounding: rays can slip through.
 
-use crate::method::{RtiMethod, TriangleHit, cross, dot, is_degenerate, is_traceable, sub};
+use crate::method::{GivenRay, RtiMethod, TriangleHit, cross, dot, is_degenerate, sub};
 use photinus_num::Scalar;
 
 /// The method.
@@ -18,17 +18,10 @@ pub struct Prepared<S> {
     edge_c: [S; 3],
 }
 
-/// The ray as it came.
-#[derive(Clone, Copy, Debug)]
-pub struct Started<S> {
-    origin: [S; 3],
-    dir: [S; 3],
-}
-
 impl<S: Scalar> RtiMethod<S> for MollerTrumbore {
     const NAME: &'static str = "moller-trumbore";
     type Prepared = Prepared<S>;
-    type Started = Started<S>;
+    type Started = GivenRay<S>;
 
     fn prepare(vertices: [[S; 3]; 3]) -> Prepared<S> {
         if is_degenerate(&vertices) {
@@ -39,12 +32,12 @@ impl<S: Scalar> RtiMethod<S> for MollerTrumbore {
         Prepared { vertex: a, edge_b: sub(b, a), edge_c: sub(c, a) }
     }
 
-    fn start(origin: [S; 3], dir: [S; 3]) -> Option<Started<S>> {
-        is_traceable(&origin, &dir).then_some(Started { origin, dir })
+    fn start(origin: [S; 3], dir: [S; 3]) -> Option<GivenRay<S>> {
+        GivenRay::new(origin, dir)
     }
 
     #[inline]
-    fn intersect(ray: &Started<S>, triangle: &Prepared<S>, t_min: S, t_max: S) -> Option<TriangleHit<S>> {
+    fn intersect(ray: &GivenRay<S>, triangle: &Prepared<S>, t_min: S, t_max: S) -> Option<TriangleHit<S>> {
         let (zero, one) = (S::zero(), S::one());
         let p = cross(ray.dir, triangle.edge_c);
         let det = dot(triangle.edge_b, p);

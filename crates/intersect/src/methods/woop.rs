@@ -8,7 +8,7 @@
 //! weights of slivers stay as good as the sheared vertices, nothing underflows or overflows, and any implementation of
 //! the filter gives the same bits.
 
-use crate::method::{RtiMethod, TriangleHit, dominant_axis, is_degenerate, is_traceable};
+use crate::method::{RtiMethod, TriangleHit, dominant_axis, is_degenerate, is_traceable, straddles};
 use photinus_num::Scalar;
 
 /// The method.
@@ -58,12 +58,6 @@ impl Started<f32> {
     }
 }
 
-/// Whether values of these signs lie on both sides of zero; NaN lies on neither.
-#[inline]
-fn straddles<S: PartialOrd>(values: [S; 3], zero: S) -> bool {
-    values.iter().any(|x| *x < zero) && values.iter().any(|x| *x > zero)
-}
-
 #[inline]
 fn edge_functions<S: Scalar>([a, b, c]: &[[S; 3]; 3]) -> [S; 3] {
     [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]]
@@ -72,19 +66,19 @@ fn edge_functions<S: Scalar>([a, b, c]: &[[S; 3]; 3]) -> [S; 3] {
 /// The second half of the method: sheared vertices in doubles (from floats: exact) to a hit.
 ///
 /// `dir_z` is [`Started::dir_z`]. The result is the hit of the sheared triangle, t and the weights rounded by a few
-/// 2^-53; t may lie outside the ray's interval.
+/// 2^-53; t may lie outside the ray's interval. Over any scalar so that its operations can be counted.
 #[inline]
-pub fn finish(sheared: &[[f64; 3]; 3], dir_z: f64) -> Option<TriangleHit<f64>> {
+pub fn finish<S: Scalar>(sheared: &[[S; 3]; 3], dir_z: S) -> Option<TriangleHit<S>> {
     let [u, v, w] = edge_functions(sheared);
-    if straddles([u, v, w], 0.0) {
+    if straddles([u, v, w], S::zero()) {
         return None;
     }
     let det = u + v + w;
     // Seen from the side, or not a number.
-    if !(det.abs() > 0.0) {
+    if !(det.abs() > S::zero()) {
         return None;
     }
-    let inv_det = 1.0 / det;
+    let inv_det = S::one() / det;
     let t = (u * sheared[0][2] + v * sheared[1][2] + w * sheared[2][2]) * inv_det / dir_z;
     Some(TriangleHit { t, alpha: v * inv_det, beta: w * inv_det })
 }
