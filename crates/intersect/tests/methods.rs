@@ -242,6 +242,25 @@ fn leaks(method: &MethodInfo, offset: Vec3, size: f32) -> usize {
     leaks.count()
 }
 
+/// Where edges and vertices are met exactly a closed method loses no ray; the half-open one does, at edges that both
+/// neighbours leave out.
+#[test]
+fn exact_seams_are_closed() {
+    let mesh = exact_box(12);
+    let rays = exact_rays(&mesh);
+    let ids: Vec<u32> = (0..mesh.triangle_count() as u32).collect();
+    for method in METHODS {
+        let tester = (method.leaf_tester)(&mesh);
+        let lost = rays.iter().filter(|ray| {
+            let mut hit = Hit::MISS;
+            tester.closest_hit(ray, &ids, &mut hit);
+            !hit.is_hit()
+        });
+        let lost = lost.count();
+        assert_eq!(lost == 0, method.closed, "{}: {lost} of {} rays", method.name, rays.len());
+    }
+}
+
 #[test]
 fn no_ray_leaves_a_closed_mesh_through_a_watertight_method() {
     let mut others = 0;

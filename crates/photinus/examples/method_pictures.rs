@@ -1,5 +1,7 @@
 //! Renders small pictures with every ray-triangle method and every acceleration structure, and counts the pixels that
-//! differ from those of the default members: `cargo run --release -p photinus --example method_pictures`.
+//! differ from those of the default members: `cargo run --release -p photinus --example method_pictures [-- --brute-force]`.
+//!
+//! Testing every triangle of the room for every ray takes minutes and is done on demand only.
 
 #![expect(clippy::print_stdout, reason = "an example talks to its reader")]
 
@@ -51,12 +53,13 @@ fn codes(a: [f32; 3], b: [f32; 3]) -> f32 {
 }
 
 fn main() -> Result<()> {
+    let brute_force = std::env::args().any(|argument| argument == "--brute-force");
     for scene in SCENES {
         let (reference, distances) = render(&scene, names::ACCEL.default, names::INTERSECT.default)?;
         println!("{}, {} pixels: another distance, more than one code, more than eight", scene.name, distances.len());
         for method in names::INTERSECT.members() {
             print!("{:<17}", method.name);
-            for structure in names::ACCEL.members() {
+            for structure in names::ACCEL.members().iter().filter(|s| brute_force || s.name != "brute-force") {
                 let (picture, depth) = render(&scene, structure.name, method.name)?;
                 let far = depth.iter().zip(&distances).filter(|(a, b)| !((*a - *b).abs() <= 1e-3 * b.abs())).count();
                 let pixels = || (0..depth.len()).map(|i| [i % scene.size[0] as usize, i / scene.size[0] as usize]);
