@@ -2,6 +2,7 @@
 
 mod machine;
 mod pictures;
+mod rays;
 mod report;
 mod timed;
 
@@ -24,7 +25,7 @@ pub struct Options {
 type Bench = (&'static str, fn(&Path, &Options) -> Result<(), Failure>);
 
 /// All of them.
-const BENCHES: &[Bench] = &[("pictures", pictures::run)];
+const BENCHES: &[Bench] = &[("pictures", pictures::run), ("rays", rays::run)];
 
 /// Runs `bench NAME [--quick] [--json] [--repeats N] [--only ENGINE,...]`; none where the words are not of this form.
 pub fn run(root: &Path, words: &[&str]) -> Option<Result<(), Failure>> {

@@ -69,18 +69,27 @@ pub fn median(values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Fills the ratios of our engine's rows, in units where less is better: best peer over ours, of the same set, size and
-/// unit.
+/// Fills the ratios of our engine's rows, in units where less is better: best peer over ours, of the same set, size,
+/// threads and unit.
 pub fn fill_ratios_of_errors(rows: &mut [Row]) {
+    fill_ratios(rows, f64::min, |best, ours| best / ours);
+}
+
+/// The same in units where more is better: ours over the best peer.
+pub fn fill_ratios_of_rates(rows: &mut [Row]) {
+    fill_ratios(rows, f64::max, |best, ours| ours / best);
+}
+
+fn fill_ratios(rows: &mut [Row], better: fn(f64, f64) -> f64, ratio: fn(f64, f64) -> f64) {
     for i in 0..rows.len() {
         let ours = &rows[i];
         if ours.engine != OURS {
             continue;
         }
-        let alike =
-            |row: &&Row| row.engine != OURS && row.set == ours.set && row.size == ours.size && row.unit == ours.unit;
-        let best = rows.iter().filter(alike).filter_map(|row| row.median).reduce(f64::min);
-        let ratio = best.zip(ours.median).map(|(best, ours)| best / ours);
+        let kind = |row: &Row| (row.set.clone(), row.size.clone(), row.threads, row.unit);
+        let alike = |row: &&Row| row.engine != OURS && kind(row) == kind(ours);
+        let best = rows.iter().filter(alike).filter_map(|row| row.median).reduce(better);
+        let ratio = best.zip(ours.median).map(|(best, ours)| ratio(best, ours));
         rows[i].ratio_to_best_peer = ratio.filter(|ratio| ratio.is_finite());
     }
 }
@@ -105,6 +114,38 @@ impl Report {
         }
         for set in sets {
             out += &self.table(set);
+        }
+        out
+    }
+
+    /// Tables in Markdown, one for each size and number of threads; a line for each set, a column for each engine with its
+    /// median and, in brackets, how ours compares with it, above 1 where ours is better.
+    pub fn wide_tables(&self) -> String {
+        let mut out = format!("{}\n{}\n", self.version, self.machine.line());
+        for note in &self.notes {
+            out += &format!("{note}\n");
+        }
+        for (size, threads) in unique(self.rows.iter().map(|row| (row.size.as_str(), row.threads))) {
+            let rows: Vec<&Row> = self.rows.iter().filter(|row| row.size == size && row.threads == threads).collect();
+            let engines = unique(rows.iter().map(|row| row.engine.as_str()));
+            out += &format!("\n{size}, threads: {threads}\n\n| set | unit | {} |\n", engines.join(" | "));
+            out += &format!("|---|---|{}\n", "---|".repeat(engines.len()));
+            for (set, unit) in unique(rows.iter().map(|row| (row.set.as_str(), row.unit))) {
+                let of_set: Vec<&&Row> = rows.iter().filter(|row| row.set == set && row.unit == unit).collect();
+                let find = |engine: &str| of_set.iter().find(|row| row.engine == engine).and_then(|row| row.median);
+                let less_is_better = unit.ends_with("_s") && !unit.contains("_per_");
+                let shown = |engine: &&str| {
+                    let Some(value) = find(engine) else { return "-".to_owned() };
+                    let ratio = find(OURS).map(|ours| if less_is_better { value / ours } else { ours / value });
+                    let ratio = ratio.filter(|_| *engine != OURS);
+                    short(value) + &ratio.map_or(String::new(), |ratio| format!(" ({ratio:.2})"))
+                };
+                let cells: Vec<String> = engines.iter().map(shown).collect();
+                out += &format!("| {set} | {unit} | {} |\n", cells.join(" | "));
+            }
+            for row in rows.iter().filter(|row| row.median.is_none()) {
+                out += &format!("{} {}: {}\n", row.set, row.engine, row.note);
+            }
         }
         out
     }
@@ -146,6 +187,17 @@ fn cell(row: &Row) -> String {
     let spread = if low == high { String::new() } else { format!(" ({} to {})", short(low), short(high)) };
     let ratio = row.ratio_to_best_peer.map_or(String::new(), |ratio| format!(", ratio {ratio:.2}"));
     format!("{}{spread}{ratio}", short(median))
+}
+
+/// Each value once, in the order of their first.
+fn unique<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let mut out = Vec::new();
+    values.for_each(|value| {
+        if !out.contains(&value) {
+            out.push(value);
+        }
+    });
+    out
 }
 
 /// Three significant digits.
@@ -235,6 +287,20 @@ mod tests {
         assert_eq!(document["rows"][0]["median"], 0.5);
         assert_eq!(document["rows"][0]["high"], 1.0);
         assert!(document["rows"][1]["median"].is_null() && document["rows"][0]["ratio_to_best_peer"].is_null());
+    }
+
+    #[test]
+    fn rates_are_compared_the_other_way_and_threads_apart() {
+        let mut rows = vec![row("a", OURS, "mrays_per_s", &[6.0]), row("a", "good", "mrays_per_s", &[4.0])];
+        rows.push(row("a", "bad", "mrays_per_s", &[1.0]));
+        rows.push(Row { threads: 2, ..row("a", OURS, "mrays_per_s", &[9.0]) });
+        fill_ratios_of_rates(&mut rows);
+        assert_eq!((rows[0].ratio_to_best_peer, rows[3].ratio_to_best_peer), (Some(1.5), None));
+        let report = Report { bench: "rays", version: "0".into(), machine: Machine::here(), notes: Vec::new(), rows };
+        let text = report.wide_tables();
+        assert!(text.contains("| set | unit | photinus | good | bad |"), "{text}");
+        assert!(text.contains("| a | mrays_per_s | 6.00 | 4.00 (1.50) | 1.00 (6.00) |"), "{text}");
+        assert!(text.contains("8x8, threads: 2"), "{text}");
     }
 
     #[test]

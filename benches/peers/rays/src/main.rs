@@ -5,6 +5,7 @@
 
 mod agree;
 mod engines;
+mod furnished;
 mod measure;
 mod meshes;
 mod sets;

@@ -1,5 +1,6 @@
-//! Meshes with a camera and a lamp.
+//! Meshes with a camera and a lamp: built-in scenes, files, and rooms furnished with the models of a folder.
 
+use crate::furnished;
 use photinus_geometry::{Primitives, Vec3};
 use photinus_render::Compiled;
 use photinus_scene::{LoadOptions, builtin};
@@ -20,9 +21,13 @@ pub struct Mesh {
     pub lamp_size: f32,
 }
 
-/// A built-in scene by its name, or `NAME=FILE`.
+/// A built-in scene by its name, `NAME=FILE`, or `TRIANGLES=FOLDER` for a room furnished with the folder's models until
+/// it has so many triangles.
 pub fn load(word: &str) -> Result<Mesh, String> {
     let (name, scene) = match word.split_once('=') {
+        Some((count, folder)) if count.parse::<usize>().is_ok() => {
+            return furnished::room(count.parse().expect("a number"), Path::new(folder));
+        }
         Some((name, file)) => {
             let scene = photinus_scene::load(Path::new(file), &LoadOptions::default());
             (name, scene.map_err(|error| error.to_string())?)

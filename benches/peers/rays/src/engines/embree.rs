@@ -93,7 +93,6 @@ struct Embree {
     /// Read by the scene as long as it lives.
     _vertices: Vec<[f32; 4]>,
     _indices: Vec<[u32; 3]>,
-    _library: Library,
 }
 
 // Queries of a committed scene may come from any thread (rtcIntersect1, "thread safety").
@@ -124,7 +123,8 @@ fn build(mesh: &Mesh, arguments: &Arguments, flags: u32, packets: bool) -> Resul
     let said = |error: libloading::Error| error.to_string();
     // Functions and constants as the headers of Embree 4 declare them.
     unsafe {
-        let library = Library::new(path).map_err(said)?;
+        // Its threads outlive scenes: it stays as long as the program.
+        let library: &'static Library = Box::leak(Box::new(Library::new(path).map_err(said)?));
         let vertices: Vec<[f32; 4]> = mesh.primitives.positions.iter().map(|v| [v.x, v.y, v.z, 0.0]).collect();
         let indices = mesh.primitives.triangles.clone();
         let new_device: Symbol<unsafe extern "C" fn(*const c_char) -> Handle> =
@@ -173,7 +173,6 @@ fn build(mesh: &Mesh, arguments: &Arguments, flags: u32, packets: bool) -> Resul
             occluded16,
             _vertices: vertices,
             _indices: indices,
-            _library: library,
         }))
     }
 }
