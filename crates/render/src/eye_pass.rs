@@ -123,17 +123,20 @@ impl Path {
     }
 }
 
-/// Edge of a block in pixels: camera rays that follow each other run through sixteen pixels side by side.
-const BLOCK: u32 = 4;
+/// Edges of blocks in pixels, the larger first: camera rays that follow each other run side by side.
+const BLOCKS: [u32; 2] = [8, 4];
 
-/// The pixels of a tile in blocks, row by row in each.
-fn blocks(width: u32, height: u32) -> impl Iterator<Item = u32> {
-    let rows = move |y0: u32| y0..(y0 + BLOCK).min(height);
-    let columns = move |x0: u32| x0..(x0 + BLOCK).min(width);
-    let corners = (0..height)
-        .step_by(BLOCK as usize)
-        .flat_map(move |y0| (0..width).step_by(BLOCK as usize).map(move |x0| (x0, y0)));
-    corners.flat_map(move |(x0, y0)| rows(y0).flat_map(move |y| columns(x0).map(move |x| y * width + x)))
+/// Corners, and edges where they end, of the blocks of an area, row by row.
+fn blocks([x0, y0, x1, y1]: [u32; 4], edge: u32) -> impl Iterator<Item = [u32; 4]> {
+    let corners = (y0..y1).step_by(edge as usize);
+    let corners = corners.flat_map(move |y| (x0..x1).step_by(edge as usize).map(move |x| [x, y]));
+    corners.map(move |[x, y]| [x, y, (x + edge).min(x1), (y + edge).min(y1)])
+}
+
+/// The pixels of a tile, by blocks of blocks.
+fn pixels_of(width: u32, height: u32) -> impl Iterator<Item = u32> {
+    let blocks = blocks([0, 0, width, height], BLOCKS[0]).flat_map(|area| blocks(area, BLOCKS[1]));
+    blocks.flat_map(move |[x0, y0, x1, y1]| (y0..y1).flat_map(move |y| (x0..x1).map(move |x| y * width + x)))
 }
 
 /// Lists that tiles hand on to one another.
@@ -213,7 +216,7 @@ impl EyePass<'_> {
     /// The paths of a sample of a tile.
     pub(crate) fn camera_paths<'t>(&'t self, sample: u32, tile: &'t mut Tile) -> impl Iterator<Item = Path> + 't {
         tile.sample = sample;
-        blocks(tile.place[2], tile.place[3]).map(move |pixel| {
+        pixels_of(tile.place[2], tile.place[3]).map(move |pixel| {
             let [x, y] = self.film_pixel(tile.place, pixel);
             let mut sampler = self.camera_sampler([x, y], sample);
             let ([dx, dy], weight) = self.film_offset(sampler.next_2d());

@@ -66,10 +66,10 @@ fn primary(mesh: &Mesh, count: usize) -> Vec<Ray> {
     let mut out = Vec::with_capacity(columns * rows * TILE * TILE);
     for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
         for place in 0..TILE * TILE {
-            // Blocks of four times four: what packets like best.
-            let (block, inner) = (place / 16, place % 16);
-            let x = block % (TILE / 4) * 4 + inner % 4;
-            let y = block / (TILE / 4) * 4 + inner / 4;
+            // Blocks of four times four in blocks of eight times eight, as the renderer follows them: what packets like best.
+            let bits = |low: usize, count: usize| place >> low & ((1 << count) - 1);
+            let x = bits(6, 2) * 8 + bits(4, 1) * 4 + bits(0, 2);
+            let y = bits(8, 2) * 8 + bits(5, 1) * 4 + bits(2, 2);
             let mut s = numbers(0, out.len());
             let u = ((column * TILE + x) as f32 + s.next_1d()) / (columns * TILE) as f32 * 2.0 - 1.0;
             let v = 1.0 - ((row * TILE + y) as f32 + s.next_1d()) / (rows * TILE) as f32 * 2.0;

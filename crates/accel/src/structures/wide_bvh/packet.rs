@@ -8,7 +8,7 @@
 use super::kernels::{Kernel, Reach};
 use super::layout::WIDTH;
 use crate::bounds::SLAB_SLACK;
-use photinus_geometry::{Aabb, Hit, Ray};
+use photinus_geometry::{Hit, Ray};
 
 /// Rays of a packet.
 pub const PACKET: usize = 16;
@@ -45,6 +45,43 @@ pub struct Packet {
     pub best: [Hit; PACKET],
     /// Components of the directions along the third axis of the ray-triangle test.
     pub dir_z: ByRay,
+    /// Axes of the ray-triangle test.
+    pub axes: [usize; 3],
+    /// Least and greatest shears, and starts by axis.
+    pub bounds: PacketBounds,
+    /// All rays together.
+    pub beam: Beam,
+}
+
+/// Least and greatest of what tells whether rays run closely together.
+#[derive(Clone, Copy)]
+pub struct PacketBounds {
+    shear: [[f32; 2]; 2],
+    origin: [[f32; 2]; 3],
+}
+
+const NO_BOUNDS: PacketBounds = PacketBounds { shear: [[0.0; 2]; 2], origin: [[0.0; 2]; 3] };
+
+impl PacketBounds {
+    /// Whether rays of these bounds run closely enough together in a tree of this extent.
+    #[inline(always)]
+    fn are_close(&self, tree_size: f32) -> bool {
+        let spread = self.shear.iter().all(|[low, high]| high - low <= MOST_SPREAD);
+        spread & self.origin.iter().all(|[low, high]| high - low <= MOST_APART * tree_size)
+    }
+
+    #[inline(always)]
+    fn union(mut self, other: &Self) -> Self {
+        for (a, b) in self.shear.iter_mut().zip(&other.shear).chain(self.origin.iter_mut().zip(&other.origin)) {
+            *a = [a[0].min(b[0]), a[1].max(b[1])];
+        }
+        self
+    }
+}
+
+/// Bounds of a packet: no ray of it enters a box earlier, or leaves one later, than the beam.
+#[derive(Clone, Copy)]
+pub struct Beam {
     /// Places of the bounds that rays enter and leave through, and the octant, as in
     /// [`RaySetup`](super::ray_setup::RaySetup).
     pub near: [u32; 3],
@@ -52,15 +89,6 @@ pub struct Packet {
     pub far: [u32; 3],
     /// See `near`.
     pub octant: usize,
-    /// Axes of the ray-triangle test.
-    pub axes: [usize; 3],
-    /// All rays together.
-    pub beam: Beam,
-}
-
-/// Bounds of a packet: no ray of it enters a box earlier, or leaves one later, than the beam.
-#[derive(Clone, Copy)]
-pub struct Beam {
     /// Starts from which entry parameters are least, by axis.
     pub near_origin: [f32; 3],
     /// Starts from which exit parameters are greatest.
@@ -76,6 +104,9 @@ pub struct Beam {
 }
 
 const NO_BEAM: Beam = Beam {
+    near: [0; 3],
+    far: [0; 3],
+    octant: 0,
     near_origin: [0.0; 3],
     far_origin: [0.0; 3],
     near_inv: [[0.0; 2]; 3],
@@ -83,6 +114,14 @@ const NO_BEAM: Beam = Beam {
     t_min: 0.0,
     t_max: 0.0,
 };
+
+/// Slots of a node that a beam enters, and where.
+pub struct BeamSlots {
+    /// The slots.
+    pub slots: [u32; WIDTH],
+    /// Entry parameters, none greater than that of any ray.
+    pub entries: [f32; WIDTH],
+}
 
 /// Whether the last of sixteen rays runs close to the first: most that do not run together are told apart there.
 #[inline(always)]
@@ -113,17 +152,15 @@ impl Packet {
         reach_high: [0.0; PACKET],
         best: [Hit::MISS; PACKET],
         dir_z: [1.0; PACKET],
-        near: [0; 3],
-        far: [0; 3],
-        octant: 0,
         axes: [0; 3],
+        bounds: NO_BOUNDS,
         beam: NO_BEAM,
     };
 
     /// Takes up sixteen rays; false where they had better go alone: too far from each other, of several octants or
     /// dominant axes, along an axis, or with negative parameters. What [`super::ray_setup::RaySetup::set`] computes for each, to the bit.
     #[inline(always)]
-    pub fn set<K: Kernel>(&mut self, kernel: K, rays: &[Ray; PACKET], tree_bounds: &Aabb) -> bool {
+    pub fn set<K: Kernel>(&mut self, kernel: K, rays: &[Ray; PACKET], tree_size: f32) -> bool {
         let mut dir = [[0.0; PACKET]; 3];
         for (i, ray) in rays.iter().enumerate() {
             for axis in 0..3 {
@@ -140,8 +177,7 @@ impl Packet {
         if !all(|i| z[i].abs() > x[i].abs() && z[i].abs() > y[i].abs() && self.t_min[i] >= 0.0) {
             return false;
         }
-        self.octant = 0;
-        let far_apart = MOST_APART * (tree_bounds.max - tree_bounds.min).max_element();
+        self.beam.octant = 0;
         for axis in 0..3 {
             let backward = dir[axis][0] < 0.0;
             let mut inv = [0.0; PACKET];
@@ -152,24 +188,21 @@ impl Packet {
             }
             let is_finite = all(|i| self.far_inv[axis][i].abs() < f32::INFINITY);
             let is_one_way = all(|i| (inv[i] < 0.0) == backward);
-            let [low, high] = kernel.extremes(&self.origin[axis]);
-            let apart = high - low;
-            if !(is_finite && is_one_way && apart <= far_apart) {
+            self.bounds.origin[axis] = kernel.extremes(&self.origin[axis]);
+            if !(is_finite && is_one_way) {
                 return false;
             }
-            self.near[axis] = (2 * axis as u32 + u32::from(backward)) * WIDTH as u32;
-            self.far[axis] = (2 * axis as u32 + 1 - u32::from(backward)) * WIDTH as u32;
-            self.octant |= usize::from(backward) << axis;
+            self.beam.near[axis] = (2 * axis as u32 + u32::from(backward)) * WIDTH as u32;
+            self.beam.far[axis] = (2 * axis as u32 + 1 - u32::from(backward)) * WIDTH as u32;
+            self.beam.octant |= usize::from(backward) << axis;
         }
         for i in 0..PACKET {
             self.shear[0][i] = x[i] / z[i];
             self.shear[1][i] = y[i] / z[i];
         }
         let mut is_fit = all(|i| self.t_min[i] <= self.t_max[i]);
-        for shear in &self.shear {
-            let [low, high] = kernel.extremes(shear);
-            is_fit &= high - low <= MOST_SPREAD;
-        }
+        self.bounds.shear = [kernel.extremes(&self.shear[0]), kernel.extremes(&self.shear[1])];
+        is_fit &= self.bounds.are_close(tree_size);
         for axis in 0..3 {
             is_fit &= all(|i| self.origin[axis][i].abs() < f32::INFINITY && dir[axis][i].abs() < f32::INFINITY);
         }
@@ -203,9 +236,9 @@ impl Packet {
     #[inline(always)]
     fn set_beam<K: Kernel>(&mut self, kernel: K) {
         for axis in 0..3 {
-            let [low, high] = kernel.extremes(&self.origin[axis]);
+            let [low, high] = self.bounds.origin[axis];
             // Rounding is monotonic: what holds for the ends holds for all between, to the bit.
-            let forward = self.near[axis] < self.far[axis];
+            let forward = self.beam.near[axis] < self.beam.far[axis];
             self.beam.near_origin[axis] = if forward { high } else { low };
             self.beam.far_origin[axis] = if forward { low } else { high };
             self.beam.near_inv[axis] = kernel.extremes(&self.near_inv[axis]);
@@ -214,4 +247,30 @@ impl Packet {
         [self.beam.t_min, _] = kernel.extremes(&self.t_min);
         self.shorten_beam(kernel);
     }
+}
+
+/// The beam of several packets; `None` where they had better go one by one.
+#[inline(always)]
+pub fn common_beam(packets: &[Packet], tree_size: f32) -> Option<Beam> {
+    let (first, rest) = packets.split_first()?;
+    let (mut beam, mut bounds) = (first.beam, first.bounds);
+    for packet in rest {
+        if packet.beam.octant != beam.octant || packet.axes != first.axes {
+            return None;
+        }
+        bounds = bounds.union(&packet.bounds);
+        for axis in 0..3 {
+            let forward = beam.near[axis] < beam.far[axis];
+            let later = |a: f32, b: f32| if forward { a.max(b) } else { a.min(b) };
+            let sooner = |a: f32, b: f32| if forward { a.min(b) } else { a.max(b) };
+            let outer = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+            beam.near_origin[axis] = later(beam.near_origin[axis], packet.beam.near_origin[axis]);
+            beam.far_origin[axis] = sooner(beam.far_origin[axis], packet.beam.far_origin[axis]);
+            beam.near_inv[axis] = outer(beam.near_inv[axis], packet.beam.near_inv[axis]);
+            beam.far_inv[axis] = outer(beam.far_inv[axis], packet.beam.far_inv[axis]);
+        }
+        beam.t_min = beam.t_min.min(packet.beam.t_min);
+        beam.t_max = beam.t_max.max(packet.beam.t_max);
+    }
+    bounds.are_close(tree_size).then_some(beam)
 }

@@ -1,39 +1,47 @@
-//! The walk of packets through the tree: a node at a time for all sixteen rays.
+//! The walk of packets through the tree: a node at a time for all rays of up to four packets.
 
 use super::WideBvh;
 use super::candidates::choose;
 use super::kernels::Kernel;
-use super::layout::{BLOCK, Child, NODE, WIDTH};
-use super::packet::{ByRay, PACKET, Packet, are_alike};
+use super::layout::{BLOCK, Child, NODE, TriangleBlock, WIDTH};
+use super::packet::{Beam, BeamSlots, ByRay, PACKET, Packet, are_alike, common_beam};
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
 use photinus_intersect::methods::woop::{LaneHits, finish_lanes};
 use photinus_profile::ticks;
 
-/// A child that waits: where each ray enters it, and which do.
+/// Most packets that walk together: an eight times eight pixels' worth.
+const BUNDLE: usize = 4;
+
+/// Rays of a bundle, by packet.
+type Rays = [u16; BUNDLE];
+
+/// A child that waits: which rays may enter it, and from where on.
 #[derive(Clone, Copy)]
-#[repr(C, align(64))]
 struct Waiting {
-    entries: ByRay,
+    rays: Rays,
+    entry: f32,
     child: Child,
-    rays: u16,
 }
 
-const NOTHING: Waiting = Waiting { entries: [0.0; PACKET], child: Child::END, rays: 0 };
-
-/// A packet under way, one after the other.
+/// Packets under way.
 struct PacketWalk<'a, K: Kernel> {
     tree: &'a WideBvh,
+    tree_size: f32,
     kernel: K,
-    packet: Packet,
+    packets: [Packet; BUNDLE],
+    /// The packets that walk now.
+    first: usize,
+    count: usize,
+    beam: Beam,
     stack: Vec<Waiting>,
     candidates: Candidates,
 }
 
 /// Triangles finished at a time.
 const TOGETHER: usize = 8;
-/// All rays with all triangles of a block, and as many places as are read beyond the last.
+/// A packet's rays with all triangles of a block, and as many places as are read beyond the last.
 const ROOM: usize = PACKET * WIDTH + TOGETHER;
 
 /// What the filter left of a block.
@@ -41,7 +49,7 @@ struct Candidates {
     /// Sheared vertices, by vertex and axis.
     sheared: [[f32; ROOM]; 9],
     dir_z: [f32; ROOM],
-    /// Numbers in the packet and in the block.
+    /// Numbers in the bundle and in the block.
     rays: [u8; ROOM],
     lanes: [u8; ROOM],
     len: usize,
@@ -51,9 +59,9 @@ impl Candidates {
     const NONE: Self =
         Self { sheared: [[0.0; ROOM]; 9], dir_z: [1.0; ROOM], rays: [0; ROOM], lanes: [0; ROOM], len: 0 };
 
-    /// Adds rays of a mask with the triangle in `lane`.
+    /// Adds rays of a packet's mask with the triangle in `lane`.
     #[inline(always)]
-    fn add(&mut self, mut rays: u16, lane: usize, sheared: &[ByRay; 9], dir_z: &ByRay) {
+    fn add(&mut self, mut rays: u16, packet: usize, lane: usize, sheared: &[ByRay; 9], dir_z: &ByRay) {
         while rays != 0 {
             let ray = rays.trailing_zeros() as usize;
             let place = self.len % ROOM;
@@ -61,7 +69,7 @@ impl Candidates {
                 to[place] = from[ray];
             }
             self.dir_z[place] = dir_z[ray];
-            (self.rays[place], self.lanes[place]) = (ray as u8, lane as u8);
+            (self.rays[place], self.lanes[place]) = ((packet * PACKET + ray) as u8, lane as u8);
             self.len += 1;
             rays &= rays - 1;
         }
@@ -88,34 +96,58 @@ impl Candidates {
 impl<'a, K: Kernel> PacketWalk<'a, K> {
     /// Walks of packets through `tree`.
     fn new(tree: &'a WideBvh, kernel: K) -> Self {
-        let stack = vec![NOTHING; tree.stack_places];
-        Self { tree, kernel, packet: Packet::IDLE, stack, candidates: Candidates::NONE }
+        let nothing = Waiting { rays: [0; BUNDLE], entry: 0.0, child: Child::END };
+        Self {
+            tree,
+            tree_size: (tree.bounds.max - tree.bounds.min).max_element(),
+            kernel,
+            packets: [Packet::IDLE; BUNDLE],
+            first: 0,
+            count: 0,
+            beam: Packet::IDLE.beam,
+            stack: vec![nothing; tree.stack_places],
+            candidates: Candidates::NONE,
+        }
     }
 
-    /// The hits of sixteen rays as the single walk would find them; `None` where they had better go alone.
+    /// Takes up the packets of some rays, at most [`BUNDLE`], and says which groups of sixteen are some.
     #[inline(always)]
-    fn trace<const ANY: bool, const COUNT: bool>(
-        &mut self,
-        rays: &[Ray; PACKET],
-        counters: &mut RayCounters,
-    ) -> Option<&[Hit; PACKET]> {
-        if !self.packet.set(self.kernel, rays, &self.tree.bounds) {
-            return None;
+    fn set(&mut self, rays: &[[Ray; PACKET]]) -> [bool; BUNDLE] {
+        let mut are_packets = [false; BUNDLE];
+        for ((packet, rays), is_packet) in self.packets.iter_mut().zip(rays).zip(&mut are_packets) {
+            *is_packet = are_alike(&rays[0], &rays[PACKET - 1]) && packet.set(self.kernel, rays, self.tree_size);
         }
+        are_packets
+    }
+
+    /// Whether `count` packets from `first` can walk together; they are the ones that walk next.
+    #[inline(always)]
+    fn choose(&mut self, first: usize, count: usize) -> bool {
+        let Some(beam) = common_beam(&self.packets[first..first + count], self.tree_size) else { return false };
+        (self.first, self.count, self.beam) = (first, count, beam);
+        true
+    }
+
+    /// Finds the hits of the chosen packets as single walks would.
+    #[inline(always)]
+    fn trace<const ANY: bool, const COUNT: bool>(&mut self, rays: &[[Ray; PACKET]], counters: &mut RayCounters) {
         let begun = if COUNT { ticks() } else { 0 };
-        self.stack[0] = Waiting { entries: self.packet.t_min, child: Child::node(0), rays: u16::MAX };
+        let mut all = [0; BUNDLE];
+        all[..self.count].fill(u16::MAX);
+        self.stack[0] = Waiting { rays: all, entry: self.beam.t_min, child: Child::node(0) };
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let Waiting { child, rays: waiting, .. } = self.stack[top];
-            let reached = waiting & self.kernel.reached(&self.stack[top].entries, &self.packet.t_max);
-            if reached == 0 {
+            let Waiting { rays: reached, entry, child } = self.stack[top];
+            // False too where all rays have ended.
+            if !(entry <= self.beam.t_max) {
                 continue;
             }
             match child.kind() {
                 NODE => {
                     if COUNT {
-                        counters.traversal.nodes_visited += u64::from(reached.count_ones());
+                        let visits = reached.iter().map(|rays| u64::from(rays.count_ones()));
+                        counters.traversal.nodes_visited += visits.sum::<u64>();
                     }
                     top = self.visit_node(child, reached, top);
                 }
@@ -133,21 +165,28 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         if COUNT {
             counters.ticks.total += ticks().wrapping_sub(begun);
         }
-        Some(&self.packet.best)
     }
 
     /// Puts the children that any ray enters on the stack, from far to near, and returns its new height.
     #[inline(always)]
-    fn visit_node(&mut self, child: Child, rays: u16, mut top: usize) -> usize {
+    fn visit_node(&mut self, child: Child, rays: Rays, mut top: usize) -> usize {
         let node = &self.tree.nodes[child.index()];
-        let mut slots = [0; WIDTH];
-        let count = self.kernel.beam(&self.packet, node, &mut slots);
-        for &slot in &slots[..count] {
-            let slot = slot as usize % WIDTH;
+        let mut entered = BeamSlots { slots: [0; WIDTH], entries: [0.0; WIDTH] };
+        let count = self.kernel.beam(&self.beam, node, &mut entered);
+        for i in 0..count {
+            let slot = entered.slots[i] as usize % WIDTH;
             let waiting = &mut self.stack[top];
-            waiting.child = node.children[slot];
-            waiting.rays = rays & self.kernel.packet_box(&self.packet, node, slot, &mut waiting.entries);
-            top += usize::from(waiting.rays != 0);
+            (waiting.child, waiting.entry) = (node.children[slot], entered.entries[i]);
+            waiting.rays = [0; BUNDLE];
+            let mut any = 0;
+            for p in 0..self.count {
+                if rays[p] != 0 {
+                    let packet = &self.packets[self.first + p];
+                    waiting.rays[p] = rays[p] & self.kernel.packet_box(packet, node, slot);
+                    any |= waiting.rays[p];
+                }
+            }
+            top += usize::from(any != 0);
         }
         top
     }
@@ -156,46 +195,74 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     fn visit_block<const ANY: bool, const COUNT: bool>(
         &mut self,
         child: Child,
-        reached: u16,
+        reached: Rays,
         counters: &mut RayCounters,
     ) {
         let block = &self.tree.blocks[child.index()];
         let len = block.len();
         self.candidates.len = 0;
         let mut sheared = [[0.0; PACKET]; 9];
-        for lane in 0..len {
-            let passed = reached & self.kernel.packet_triangle(&self.packet, block, lane, &mut sheared);
-            self.candidates.add(passed, lane, &sheared, &self.packet.dir_z);
-        }
         let mut hits = 0;
-        let mut first = 0;
-        while first < self.candidates.len {
-            hits += self.finish::<ANY>(child, first);
-            first += TOGETHER;
+        for p in 0..self.count {
+            if reached[p] == 0 {
+                continue;
+            }
+            if self.candidates.len > ROOM - TOGETHER - PACKET * len {
+                hits += self.finish_all::<ANY>(block);
+            }
+            let packet = &self.packets[self.first + p];
+            for lane in 0..len {
+                let passed = reached[p] & self.kernel.packet_triangle(packet, block, lane, &mut sheared);
+                self.candidates.add(passed, p, lane, &sheared, &packet.dir_z);
+            }
+            if COUNT {
+                for _ in 0..reached[p].count_ones() {
+                    counters.add_leaf(len, LeafWork { tests: len as u32, hits: 0 });
+                }
+            }
         }
+        hits += self.finish_all::<ANY>(block);
         if hits > 0 {
-            self.packet.shorten_beam(self.kernel);
+            self.shorten_beam();
         }
         if COUNT {
-            for _ in 0..reached.count_ones() {
-                counters.add_leaf(len, LeafWork { tests: len as u32, hits: 0 });
-            }
             counters.intersect.hits += hits;
         }
     }
 
+    /// Lets the beam end with its last ray.
+    #[inline(always)]
+    fn shorten_beam(&mut self) {
+        self.beam.t_max = f32::NEG_INFINITY;
+        for packet in &self.packets[self.first..self.first + self.count] {
+            self.beam.t_max = self.beam.t_max.max(self.kernel.extremes(&packet.t_max)[1]);
+        }
+    }
+
+    /// Finishes all candidates and returns how many are hits.
+    #[inline(always)]
+    fn finish_all<const ANY: bool>(&mut self, block: &TriangleBlock) -> u64 {
+        let (mut hits, mut first) = (0, 0);
+        while first < self.candidates.len {
+            hits += self.finish::<ANY>(block, first);
+            first += TOGETHER;
+        }
+        self.candidates.len = 0;
+        hits
+    }
+
     /// Finishes the next candidates and returns how many are hits.
     #[inline(always)]
-    fn finish<const ANY: bool>(&mut self, child: Child, first: usize) -> u64 {
-        let block = &self.tree.blocks[child.index()];
+    fn finish<const ANY: bool>(&mut self, block: &TriangleBlock, first: usize) -> u64 {
         let count = (self.candidates.len - first).min(TOGETHER);
         let found = self.candidates.finish(first);
         let mut hits = 0;
         for place in 0..count {
             let lane = usize::from(self.candidates.lanes[first + place]) % WIDTH;
-            let ray = usize::from(self.candidates.rays[first + place]) % PACKET;
+            let ray = usize::from(self.candidates.rays[first + place]);
             let (t, alpha, beta) = (found.t[place] as f32, found.alpha[place] as f32, found.beta[place] as f32);
-            let packet = &mut self.packet;
+            let packet = &mut self.packets[self.first + ray / PACKET];
+            let ray = ray % PACKET;
             let best = packet.best[ray];
             let prim = block.ids[lane];
             let accepted = (t >= packet.t_min[ray]) & (t <= packet.t_max[ray]) & t.is_finite();
@@ -212,27 +279,32 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     #[inline(never)]
     fn visit_ids<const ANY: bool, const COUNT: bool>(
         &mut self,
-        rays: &[Ray; PACKET],
+        rays: &[[Ray; PACKET]],
         child: Child,
-        reached: u16,
+        reached: Rays,
         counters: &mut RayCounters,
     ) {
         let ids = &self.tree.ids[child.ids_range()];
-        for (i, ray) in rays.iter().enumerate().filter(|(i, _)| reached >> i & 1 == 1) {
-            let tests_begun = if COUNT { ticks() } else { 0 };
-            let mut best = self.packet.best[i];
-            let work = self.tree.tester.closest_hit(ray, ids, &mut best);
-            if best.t < self.packet.best[i].t {
-                self.packet.set_end(i, if ANY { f32::NEG_INFINITY } else { best.t });
+        for (p, i) in (0..self.count).flat_map(|p| (0..PACKET).map(move |i| (p, i))) {
+            let packet = &mut self.packets[self.first + p];
+            // Where any hit ended a ray, that is all.
+            if reached[p] >> i & 1 == 0 || packet.t_max[i] == f32::NEG_INFINITY {
+                continue;
             }
-            self.packet.best[i] = best;
+            let tests_begun = if COUNT { ticks() } else { 0 };
+            let mut best = packet.best[i];
+            let work = self.tree.tester.closest_hit(&rays[self.first + p][i], ids, &mut best);
+            if best.t < packet.best[i].t {
+                packet.set_end(i, if ANY { f32::NEG_INFINITY } else { best.t });
+            }
+            packet.best[i] = best;
             if COUNT {
                 counters.add_leaf(ids.len(), work);
                 counters.ticks.tests += ticks().wrapping_sub(tests_begun);
                 counters.ticks.pairs += 1;
             }
         }
-        self.packet.shorten_beam(self.kernel);
+        self.shorten_beam();
     }
 }
 
@@ -250,16 +322,26 @@ impl WideBvh {
         let (groups, _) = rays.as_chunks::<PACKET>();
         let mut done = Vec::new();
         let mut walk: Option<PacketWalk<K>> = None;
-        for (group, rays) in groups.iter().enumerate() {
-            if !are_alike(&rays[0], &rays[PACKET - 1]) {
+        for (number, rays) in groups.chunks(BUNDLE).enumerate() {
+            if !rays.iter().any(|rays| are_alike(&rays[0], &rays[PACKET - 1])) {
                 continue;
             }
             let walk = walk.get_or_insert_with(|| PacketWalk::new(self, kernel));
-            if let Some(hits) = walk.trace::<ANY, COUNT>(rays, counters) {
-                done.resize(group, false);
-                done.push(true);
-                for (i, hit) in hits.iter().enumerate() {
-                    set(group * PACKET + i, *hit);
+            let are_packets = walk.set(rays);
+            if are_packets == [true; BUNDLE] && walk.choose(0, BUNDLE) {
+                walk.trace::<ANY, COUNT>(rays, counters);
+            } else {
+                for p in (0..BUNDLE).filter(|p| are_packets[*p]) {
+                    if walk.choose(p, 1) {
+                        walk.trace::<ANY, COUNT>(rays, counters);
+                    }
+                }
+            }
+            done.resize(number * BUNDLE, false);
+            done.extend(are_packets);
+            for (p, packet) in walk.packets.iter().enumerate().filter(|(p, _)| are_packets[*p]) {
+                for (i, hit) in packet.best.iter().enumerate() {
+                    set((number * BUNDLE + p) * PACKET + i, *hit);
                 }
             }
         }

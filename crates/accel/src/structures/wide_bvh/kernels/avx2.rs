@@ -4,7 +4,7 @@ use super::{Kernel, Lanes, Reach, SET_LANES};
 use crate::structure::RayCounters;
 use crate::structures::wide_bvh::WideBvh;
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
-use crate::structures::wide_bvh::packet::{ByRay, Packet};
+use crate::structures::wide_bvh::packet::{Beam, BeamSlots, ByRay, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
@@ -155,8 +155,7 @@ impl Kernel for Avx2 {
     }
 
     #[inline(always)]
-    fn beam(self, packet: &Packet, node: &Node, out: &mut [u32; WIDTH]) -> usize {
-        let beam = &packet.beam;
+    fn beam(self, beam: &Beam, node: &Node, out: &mut BeamSlots) -> usize {
         // SAFETY: `self` proves that the machine has AVX2; the loads and stores are of eight words each, and
         // `near` and `far` are places of bounds below 6 x 8.
         unsafe {
@@ -165,8 +164,8 @@ impl Kernel for Avx2 {
             let mut entry = spread(beam.t_min);
             let mut exit = spread(beam.t_max);
             for axis in 0..3 {
-                let near = _mm256_loadu_ps(bounds.add(packet.near[axis] as usize));
-                let far = _mm256_loadu_ps(bounds.add(packet.far[axis] as usize));
+                let near = _mm256_loadu_ps(bounds.add(beam.near[axis] as usize));
+                let far = _mm256_loadu_ps(bounds.add(beam.far[axis] as usize));
                 let enter = _mm256_sub_ps(near, spread(beam.near_origin[axis]));
                 let leave = _mm256_sub_ps(far, spread(beam.far_origin[axis]));
                 let [a, b] = beam.near_inv[axis].map(|inv| _mm256_mul_ps(enter, spread(inv)));
@@ -175,19 +174,20 @@ impl Kernel for Avx2 {
                 exit = _mm256_min_ps(_mm256_max_ps(a, b), exit);
             }
             // The order of slots, each index in its own lane; the permutations look at the lowest three bits.
-            let order = _mm256_set1_epi32(node.orders[packet.octant % 8] as i32);
+            let order = _mm256_set1_epi32(node.orders[beam.octant % 8] as i32);
             let order = _mm256_srlv_epi32(order, _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
             let entry = _mm256_permutevar8x32_ps(entry, order);
             let exit = _mm256_permutevar8x32_ps(exit, order);
             let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as usize;
             let kept = _mm256_cvtepu8_epi32(_mm_loadl_epi64(SET_LANES[mask].as_ptr().cast()));
-            _mm256_storeu_si256(out.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(order, kept));
+            _mm256_storeu_si256(out.slots.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(order, kept));
+            _mm256_storeu_ps(out.entries.as_mut_ptr(), _mm256_permutevar8x32_ps(entry, kept));
             mask.count_ones() as usize
         }
     }
 
     #[inline(always)]
-    fn packet_box(self, packet: &Packet, node: &Node, slot: usize, entries: &mut ByRay) -> u16 {
+    fn packet_box(self, packet: &Packet, node: &Node, slot: usize) -> u16 {
         let mut mask = 0;
         // SAFETY: `self` proves that the machine has AVX2; the loads and stores are of eight words of sixteen each, `near` and
         // `far` are the first of eight bounds below 6 x 8, and a slot is below 8.
@@ -198,15 +198,14 @@ impl Kernel for Avx2 {
                 let mut entry = load(&packet.t_min);
                 let mut exit = load(&packet.t_max);
                 for axis in 0..3 {
-                    let near = _mm256_set1_ps(*bounds.add(packet.near[axis] as usize));
-                    let far = _mm256_set1_ps(*bounds.add(packet.far[axis] as usize));
+                    let near = _mm256_set1_ps(*bounds.add(packet.beam.near[axis] as usize));
+                    let far = _mm256_set1_ps(*bounds.add(packet.beam.far[axis] as usize));
                     let origin = load(&packet.origin[axis]);
                     let t_near = _mm256_mul_ps(_mm256_sub_ps(near, origin), load(&packet.near_inv[axis]));
                     let t_far = _mm256_mul_ps(_mm256_sub_ps(far, origin), load(&packet.far_inv[axis]));
                     entry = _mm256_max_ps(t_near, entry);
                     exit = _mm256_min_ps(t_far, exit);
                 }
-                _mm256_storeu_ps(entries.as_mut_ptr().add(half), entry);
                 mask |= (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u16) << half;
             }
         }
@@ -272,20 +271,6 @@ impl Kernel for Avx2 {
             let second = |x: __m128| _mm_shuffle_ps::<1>(x, x);
             [_mm_cvtss_f32(_mm_min_ss(low, second(low))), _mm_cvtss_f32(_mm_max_ss(high, second(high)))]
         }
-    }
-
-    #[inline(always)]
-    fn reached(self, entries: &ByRay, t_max: &ByRay) -> u16 {
-        let mut mask = 0;
-        // SAFETY: `self` proves that the machine has AVX2; the loads are of eight words of sixteen each.
-        unsafe {
-            for half in [0, WIDTH] {
-                let load = |x: &ByRay| _mm256_loadu_ps(x.as_ptr().add(half));
-                let reached = _mm256_cmp_ps::<_CMP_LE_OQ>(load(entries), load(t_max));
-                mask |= (_mm256_movemask_ps(reached) as u16) << half;
-            }
-        }
-        mask
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@ use super::{Kernel, Lanes, Reach};
 use crate::structure::RayCounters;
 use crate::structures::wide_bvh::WideBvh;
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
-use crate::structures::wide_bvh::packet::{ByRay, Packet};
+use crate::structures::wide_bvh::packet::{Beam, BeamSlots, ByRay, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
@@ -153,8 +153,7 @@ impl Kernel for Avx512 {
     }
 
     #[inline(always)]
-    fn beam(self, packet: &Packet, node: &Node, out: &mut [u32; WIDTH]) -> usize {
-        let beam = &packet.beam;
+    fn beam(self, beam: &Beam, node: &Node, out: &mut BeamSlots) -> usize {
         // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads and stores are of eight words each, and
         // `near` and `far` are places of bounds below 6 x 8.
         unsafe {
@@ -163,8 +162,8 @@ impl Kernel for Avx512 {
             let mut entry = spread(beam.t_min);
             let mut exit = spread(beam.t_max);
             for axis in 0..3 {
-                let near = _mm256_loadu_ps(bounds.add(packet.near[axis] as usize));
-                let far = _mm256_loadu_ps(bounds.add(packet.far[axis] as usize));
+                let near = _mm256_loadu_ps(bounds.add(beam.near[axis] as usize));
+                let far = _mm256_loadu_ps(bounds.add(beam.far[axis] as usize));
                 let enter = _mm256_sub_ps(near, spread(beam.near_origin[axis]));
                 let leave = _mm256_sub_ps(far, spread(beam.far_origin[axis]));
                 let [a, b] = beam.near_inv[axis].map(|inv| _mm256_mul_ps(enter, spread(inv)));
@@ -173,18 +172,19 @@ impl Kernel for Avx512 {
                 exit = _mm256_min_ps(_mm256_max_ps(a, b), exit);
             }
             // The order of slots, each index in its own lane; the permutations look at the lowest three bits.
-            let order = _mm256_set1_epi32(node.orders[packet.octant % 8] as i32);
+            let order = _mm256_set1_epi32(node.orders[beam.octant % 8] as i32);
             let order = _mm256_srlv_epi32(order, _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
             let entry = _mm256_permutevar8x32_ps(entry, order);
             let exit = _mm256_permutevar8x32_ps(exit, order);
             let mask = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(entry, exit);
-            _mm256_storeu_si256(out.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, order));
+            _mm256_storeu_si256(out.slots.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, order));
+            _mm256_storeu_ps(out.entries.as_mut_ptr(), _mm256_maskz_compress_ps(mask, entry));
             mask.count_ones() as usize
         }
     }
 
     #[inline(always)]
-    fn packet_box(self, packet: &Packet, node: &Node, slot: usize, entries: &mut ByRay) -> u16 {
+    fn packet_box(self, packet: &Packet, node: &Node, slot: usize) -> u16 {
         // SAFETY: `self` proves that the machine has AVX-512F; the loads and stores are of sixteen words each, `near` and
         // `far` are the first of eight bounds below 6 x 8, and a slot is below 8.
         unsafe {
@@ -193,15 +193,14 @@ impl Kernel for Avx512 {
             let mut entry = load(&packet.t_min);
             let mut exit = load(&packet.t_max);
             for axis in 0..3 {
-                let near = _mm512_set1_ps(*bounds.add(packet.near[axis] as usize));
-                let far = _mm512_set1_ps(*bounds.add(packet.far[axis] as usize));
+                let near = _mm512_set1_ps(*bounds.add(packet.beam.near[axis] as usize));
+                let far = _mm512_set1_ps(*bounds.add(packet.beam.far[axis] as usize));
                 let origin = load(&packet.origin[axis]);
                 let t_near = _mm512_mul_ps(_mm512_sub_ps(near, origin), load(&packet.near_inv[axis]));
                 let t_far = _mm512_mul_ps(_mm512_sub_ps(far, origin), load(&packet.far_inv[axis]));
                 entry = _mm512_max_ps(t_near, entry);
                 exit = _mm512_min_ps(t_far, exit);
             }
-            _mm512_storeu_ps(entries.as_mut_ptr(), entry);
             _mm512_cmp_ps_mask::<_CMP_LE_OQ>(entry, exit)
         }
     }
@@ -251,12 +250,6 @@ impl Kernel for Avx512 {
             let x = _mm512_loadu_ps(x.as_ptr());
             [_mm512_reduce_min_ps(x), _mm512_reduce_max_ps(x)]
         }
-    }
-
-    #[inline(always)]
-    fn reached(self, entries: &ByRay, t_max: &ByRay) -> u16 {
-        // SAFETY: `self` proves that the machine has AVX-512F; the loads are of sixteen words each.
-        unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(_mm512_loadu_ps(entries.as_ptr()), _mm512_loadu_ps(t_max.as_ptr())) }
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ pub mod avx512;
 pub mod scalar;
 
 use super::layout::{Child, Node, TriangleBlock, WIDTH};
-use super::packet::{ByRay, Packet};
+use super::packet::{Beam, BeamSlots, ByRay, Packet};
 use super::ray_setup::RaySetup;
 use crate::bounds::SLAB_SLACK;
 
@@ -28,12 +28,12 @@ pub trait Kernel: Copy {
     /// as a mask; what lies behind them is left undefined.
     fn keep(self, from: Lanes<'_>, t_max: f32) -> ([f32; WIDTH], [Child; WIDTH], u8);
 
-    /// Writes the slots of `node` that the packet's beam may enter to `out`, from far to near, and returns how many they
+    /// Writes the slots of `node` that the beam may enter, and where, to `out`, from far to near, and returns how many they
     /// are; what lies behind them is left undefined.
-    fn beam(self, packet: &Packet, node: &Node, out: &mut [u32; WIDTH]) -> usize;
+    fn beam(self, beam: &Beam, node: &Node, out: &mut BeamSlots) -> usize;
 
-    /// Rays of the packet that may enter the box in `slot`, as a mask, and where each would.
-    fn packet_box(self, packet: &Packet, node: &Node, slot: usize, entries: &mut ByRay) -> u16;
+    /// Rays of the packet that may enter the box in `slot`, as a mask.
+    fn packet_box(self, packet: &Packet, node: &Node, slot: usize) -> u16;
 
     /// Rays of the packet that may hit the triangle in `lane` within their reach, as a mask; what [`Kernel::block`] says of
     /// them one by one. Its vertices, sheared for each ray, go to `sheared`, by vertex and axis.
@@ -41,9 +41,6 @@ pub trait Kernel: Copy {
 
     /// The least and the greatest of all; undefined where one is not a number.
     fn extremes(self, x: &ByRay) -> [f32; 2];
-
-    /// Rays that enter at their `t_max` at most, as a mask.
-    fn reached(self, entries: &ByRay, t_max: &ByRay) -> u16;
 
     /// Asks for the five cache lines from `start`, a node or a block, to be near soon.
     fn prefetch(self, start: *const u8);

@@ -2,7 +2,7 @@
 
 use super::{Kernel, Lanes, Reach};
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
-use crate::structures::wide_bvh::packet::{ByRay, PACKET, Packet};
+use crate::structures::wide_bvh::packet::{Beam, BeamSlots, ByRay, PACKET, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::NO_HIT;
 
@@ -88,13 +88,12 @@ impl Kernel for Scalar {
     }
 
     #[inline(always)]
-    fn beam(self, packet: &Packet, node: &Node, out: &mut [u32; WIDTH]) -> usize {
-        let beam = &packet.beam;
+    fn beam(self, beam: &Beam, node: &Node, out: &mut BeamSlots) -> usize {
         let mut entries = [beam.t_min; WIDTH];
         let mut exits = [beam.t_max; WIDTH];
         for axis in 0..3 {
-            let near = &node.bounds[packet.near[axis] as usize / WIDTH];
-            let far = &node.bounds[packet.far[axis] as usize / WIDTH];
+            let near = &node.bounds[beam.near[axis] as usize / WIDTH];
+            let far = &node.bounds[beam.far[axis] as usize / WIDTH];
             let ([near_a, near_b], [far_a, far_b]) = (beam.near_inv[axis], beam.far_inv[axis]);
             for lane in 0..WIDTH {
                 let (enter, leave) = (near[lane] - beam.near_origin[axis], far[lane] - beam.far_origin[axis]);
@@ -102,29 +101,29 @@ impl Kernel for Scalar {
                 exits[lane] = min(max(leave * far_a, leave * far_b), exits[lane]);
             }
         }
-        let order = node.orders[packet.octant % 8];
+        let order = node.orders[beam.octant % 8];
         let mut count = 0;
         for i in 0..WIDTH {
             let lane = (order >> (3 * i)) as usize % WIDTH;
-            out[count % WIDTH] = lane as u32;
+            out.slots[count % WIDTH] = lane as u32;
+            out.entries[count % WIDTH] = entries[lane];
             count += usize::from(entries[lane] <= exits[lane]);
         }
         count
     }
 
     #[inline(always)]
-    fn packet_box(self, packet: &Packet, node: &Node, slot: usize, entries: &mut ByRay) -> u16 {
+    fn packet_box(self, packet: &Packet, node: &Node, slot: usize) -> u16 {
         let (mut entry, mut exit) = (packet.t_min, packet.t_max);
         for axis in 0..3 {
-            let near = node.bounds[packet.near[axis] as usize / WIDTH][slot];
-            let far = node.bounds[packet.far[axis] as usize / WIDTH][slot];
+            let near = node.bounds[packet.beam.near[axis] as usize / WIDTH][slot];
+            let far = node.bounds[packet.beam.far[axis] as usize / WIDTH][slot];
             for i in 0..PACKET {
                 entry[i] = max((near - packet.origin[axis][i]) * packet.near_inv[axis][i], entry[i]);
                 exit[i] = min((far - packet.origin[axis][i]) * packet.far_inv[axis][i], exit[i]);
             }
         }
-        *entries = entry;
-        self.reached(&entry, &exit)
+        (0..PACKET).fold(0, |mask, i| mask | u16::from(entry[i] <= exit[i]) << i)
     }
 
     #[inline(always)]
@@ -155,11 +154,6 @@ impl Kernel for Scalar {
     #[inline(always)]
     fn extremes(self, x: &ByRay) -> [f32; 2] {
         x.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[least, greatest], x| [min(*x, least), max(*x, greatest)])
-    }
-
-    #[inline(always)]
-    fn reached(self, entries: &ByRay, t_max: &ByRay) -> u16 {
-        (0..PACKET).fold(0, |mask, i| mask | u16::from(entries[i] <= t_max[i]) << i)
     }
 
     #[inline(always)]
