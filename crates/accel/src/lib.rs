@@ -5,18 +5,25 @@
 //! `brute_force`, ties going to the lowest primitive id.
 
 pub mod bounds;
+mod fragment;
+mod grid;
 mod laboratory;
 pub mod list;
 pub mod options;
+mod planes;
 mod structure;
 pub mod structures {
     //! The members: one acceleration structure a file or folder.
 
     pub mod brute_force;
+    pub mod bsp_tree;
+    pub mod compact_grid;
     pub mod kd_tree;
+    pub mod octree;
+    pub mod uniform_grid;
     pub mod wide_bvh;
 }
 
 pub use list::{DEFAULT_STRUCTURE, STRUCTURES, StructureInfo, build, find_structure};
-pub use options::{BuildError, BuildOptions, Kernel, SplitCandidates};
+pub use options::{BuildError, BuildOptions, Clip, GridCells, Kernel, SplitCandidates};
 pub use structure::{LeafRange, RayCounters, RefitError, Structure, StructureSummary};

@@ -3,7 +3,7 @@
 use crate::laboratory::{Laboratory, Leaves};
 use crate::options::{BuildError, BuildOptions};
 use crate::structure::Structure;
-use crate::structures::{brute_force, kd_tree, wide_bvh};
+use crate::structures::{brute_force, bsp_tree, compact_grid, kd_tree, octree, uniform_grid, wide_bvh};
 use photinus_geometry::{MAX_PRIMITIVES, Primitives};
 use photinus_intersect::{LeafTester, METHODS, MethodInfo, find_method};
 use std::sync::Arc;
@@ -30,6 +30,25 @@ pub const STRUCTURES: &[StructureInfo] = &[
         build: wide_bvh::build,
     },
     StructureInfo { name: kd_tree::NAME, summary: kd_tree::SUMMARY, source: kd_tree::SOURCE, build: kd_tree::build },
+    StructureInfo {
+        name: bsp_tree::NAME,
+        summary: bsp_tree::SUMMARY,
+        source: bsp_tree::SOURCE,
+        build: bsp_tree::build,
+    },
+    StructureInfo { name: octree::NAME, summary: octree::SUMMARY, source: octree::SOURCE, build: octree::build },
+    StructureInfo {
+        name: uniform_grid::NAME,
+        summary: uniform_grid::SUMMARY,
+        source: uniform_grid::SOURCE,
+        build: uniform_grid::build,
+    },
+    StructureInfo {
+        name: compact_grid::NAME,
+        summary: compact_grid::SUMMARY,
+        source: compact_grid::SOURCE,
+        build: compact_grid::build,
+    },
     StructureInfo {
         name: brute_force::NAME,
         summary: brute_force::SUMMARY,

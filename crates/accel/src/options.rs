@@ -21,16 +21,61 @@ impl SplitCandidates {
         [("uniform", Self::Uniform), ("bounds", Self::Bounds), ("sampled", Self::Sampled)];
 }
 
+/// What of a primitive counts when it is put into the cells of a structure that divides space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clip {
+    /// Its bounds: quick to build.
+    #[default]
+    Box,
+    /// Of triangles the part within the cell, cut exactly ("perfect splits": Wald and Havran, "On Building Fast kd-Trees
+    /// for Ray Tracing, and on Doing That in O(N log N)", 2006): fewer references.
+    Exact,
+}
+
+impl Clip {
+    /// Every choice with its name on the command line.
+    pub const ALL: [(&'static str, Self); 2] = [("box", Self::Box), ("exact", Self::Exact)];
+}
+
+/// How a compact grid finds the list of a cell (Lagae and Dutre, "Compact, Fast and Robust Grids for Ray Tracing", 2008).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GridCells {
+    /// By an array of offsets, one for each cell.
+    #[default]
+    Array,
+    /// By row displacement: offsets of cells with primitives only, rows pushed into each other's gaps.
+    Hashed,
+}
+
+impl GridCells {
+    /// Every choice with its name on the command line.
+    pub const ALL: [(&'static str, Self); 2] = [("array", Self::Array), ("hashed", Self::Hashed)];
+}
+
 /// Options of all structures; each reads those that concern it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildOptions {
     /// Ray-triangle method, by name; any member of [`photinus_intersect::METHODS`].
     pub method: String,
-    /// `kd-tree`: cost of visiting a node in the surface-area heuristic. Dimensionless; only the ratio to
+    /// `kd-tree`, `bsp-tree`: cost of visiting a node in the surface-area heuristic. Dimensionless; only the ratio to
     /// `triangle_cost` matters.
     pub node_cost: f64,
-    /// `kd-tree`: cost of testing a triangle.
+    /// `kd-tree`, `bsp-tree`: cost of testing a triangle.
     pub triangle_cost: f64,
+    /// `bsp-tree`: cost of a node whose plane stands across no axis, as a multiple of `node_cost`; 0 to 1000.
+    pub oblique_cost: f64,
+    /// `bsp-tree`: in nodes of at most so many primitives planes of triangles and of their edges are tried; 0 to 256.
+    pub oblique_prims: u32,
+    /// `kd-tree`, `octree`, `uniform-grid`, `compact-grid`: what of a triangle is put into cells.
+    pub clip: Clip,
+    /// `uniform-grid`, `compact-grid`: cells for each primitive; more than 0, at most 1000.
+    pub density: f64,
+    /// `compact-grid`: how cells find their lists.
+    pub grid_cells: GridCells,
+    /// `octree`: nodes of more primitives are divided; 1 to 255. None: 6.
+    pub leaf_size: Option<u32>,
+    /// `octree`: levels below the root at most; 0 to 24.
+    pub tree_depth: u32,
     /// `kd-tree`: where nodes may be split.
     pub candidates: SplitCandidates,
     /// `kd-tree`: steps per axis for `uniform`; for `sampled`, the number of primitives above which so many bounds
@@ -46,11 +91,41 @@ impl Default for BuildOptions {
             method: photinus_intersect::DEFAULT_METHOD.into(),
             node_cost: 0.5,
             triangle_cost: 0.5,
+            oblique_cost: 1.5,
+            oblique_prims: 16,
+            clip: Clip::default(),
+            density: 4.0,
+            grid_cells: GridCells::default(),
+            leaf_size: None,
+            tree_depth: 16,
             candidates: SplitCandidates::default(),
             candidate_count: 100,
             kernel: Kernel::Auto,
         }
     }
+}
+
+impl BuildOptions {
+    /// Node cost over triangle cost, rounded to a float, so that equal ratios of different costs are equal.
+    ///
+    /// # Errors
+    /// A cost that is negative or not finite, a triangle cost of zero.
+    pub(crate) fn cost_ratio(&self) -> Result<f64, BuildError> {
+        let (node, triangle) = (self.node_cost, self.triangle_cost);
+        check("the node cost", node, node >= 0.0 && node.is_finite(), "zero or more")?;
+        check("the triangle cost", triangle, triangle > 0.0 && triangle.is_finite(), "more than zero")?;
+        Ok(f64::from((node / triangle) as f32))
+    }
+}
+
+/// Refuses an option that is not `good`.
+pub(crate) fn check(
+    option: &'static str,
+    value: impl ToString,
+    good: bool,
+    expected: &'static str,
+) -> Result<(), BuildError> {
+    if good { Ok(()) } else { Err(BuildError::BadOption { option, value: value.to_string(), expected }) }
 }
 
 /// Instruction set of the wide tree's kernel.
@@ -92,7 +167,7 @@ pub enum BuildError {
         /// Triangles and spheres.
         count: usize,
     },
-    /// Costs of the surface-area heuristic that mean nothing.
+    /// An option out of its range.
     #[error("{option} is {value}, but it must be {expected}")]
     BadOption {
         /// The option.

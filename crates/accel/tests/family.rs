@@ -5,8 +5,8 @@ mod common;
 use common::*;
 use photinus_accel::structures::brute_force;
 use photinus_accel::{
-    BuildError, BuildOptions, DEFAULT_STRUCTURE, RayCounters, STRUCTURES, SplitCandidates, Structure, build,
-    find_structure,
+    BuildError, BuildOptions, Clip, DEFAULT_STRUCTURE, GridCells, RayCounters, STRUCTURES, SplitCandidates, Structure,
+    build, find_structure,
 };
 use photinus_geometry::{Hit, Primitives, Ray, Sphere, Vec3};
 use photinus_intersect::METHODS;
@@ -118,6 +118,84 @@ fn members_agree_with_brute_force_over_every_method() {
             _ => 0,
         };
         assert!(different <= allowed, "{}: {different} of {rays} rays differ", method.name);
+    }
+}
+
+/// Structures that divide space, under options that lie far from their defaults, give the oracle's hits everywhere.
+#[test]
+fn structures_that_divide_space_agree_whatever_their_options() {
+    let base = BuildOptions::default;
+    let exact = Clip::Exact;
+    let variants: Vec<(&str, BuildOptions)> = vec![
+        ("kd-tree", BuildOptions { clip: exact, ..base() }),
+        ("kd-tree", BuildOptions { clip: exact, node_cost: 0.0, candidates: SplitCandidates::Bounds, ..base() }),
+        ("kd-tree", BuildOptions { clip: exact, candidates: SplitCandidates::Uniform, candidate_count: 5, ..base() }),
+        ("octree", BuildOptions { clip: exact, leaf_size: Some(1), tree_depth: 10, ..base() }),
+        ("octree", BuildOptions { leaf_size: Some(30), ..base() }),
+        ("octree", BuildOptions { tree_depth: 0, ..base() }),
+        ("uniform-grid", BuildOptions { clip: exact, density: 60.0, ..base() }),
+        ("uniform-grid", BuildOptions { density: 0.05, ..base() }),
+        ("uniform-grid", BuildOptions { density: 1000.0, ..base() }),
+        ("compact-grid", BuildOptions { clip: exact, density: 10.0, ..base() }),
+        ("compact-grid", BuildOptions { grid_cells: GridCells::Hashed, density: 30.0, ..base() }),
+        ("bsp-tree", BuildOptions { oblique_prims: 64, oblique_cost: 0.0, node_cost: 0.02, ..base() }),
+        ("bsp-tree", BuildOptions { oblique_prims: 0, ..base() }),
+        ("bsp-tree", BuildOptions { node_cost: 0.0, ..base() }),
+    ];
+    for scene in scenes() {
+        let oracle = closest(&*built("brute-force", &scene, &base()), &scene.rays);
+        for (name, options) in &variants {
+            let structure = built(name, &scene, options);
+            for (hit, (ray, expected)) in closest(&*structure, &scene.rays).iter().zip(scene.rays.iter().zip(&oracle)) {
+                assert_eq!(hit, expected, "{name} with {options:?} in {}: {ray:?}", scene.name);
+            }
+            for (hit, (ray, expected)) in any(&*structure, &scene.rays).iter().zip(scene.rays.iter().zip(&oracle)) {
+                assert_eq!(*hit, expected.is_hit(), "{name} with {options:?} in {}: {ray:?}", scene.name);
+            }
+        }
+    }
+}
+
+/// Rays from far away: where one rounding of the way is as wide as cells are, hits are the same all the same.
+#[test]
+fn rays_from_afar_lose_no_hit() {
+    let mut random = Random::new(71);
+    for distance in [1e3f32, 1e5, 1e7] {
+        let mut scene = random_soup(70, 800, Vec3::ZERO, 1.0, 0.2);
+        scene.rays = (0..200)
+            .map(|_| {
+                let (from, to) = (random.vec3() * distance, random.vec3());
+                Ray::new(from, (to - from).normalize())
+            })
+            .collect();
+        let oracle = closest(&*built("brute-force", &scene, &BuildOptions::default()), &scene.rays);
+        assert!(oracle.iter().filter(|h| h.is_hit()).count() > 50, "{distance}");
+        for info in STRUCTURES {
+            let hits = closest(&*built(info.name, &scene, &BuildOptions::default()), &scene.rays);
+            assert_eq!(hits, oracle, "{} from {distance}", info.name);
+        }
+    }
+}
+
+/// The leaves of a ray, where a structure lists them, hold its hit, and each place is visited at most once.
+#[test]
+fn leaves_of_a_ray_hold_its_hit() {
+    let scene = with_spheres(random_soup(80, 800, Vec3::ZERO, 1.0, 0.2), 81, 30, 1.0);
+    for info in STRUCTURES {
+        let structure = built(info.name, &scene, &BuildOptions::default());
+        let Some(refs) = structure.refs() else { continue };
+        let mut found = 0;
+        for (ray, hit) in scene.rays.iter().zip(closest(&*structure, &scene.rays)) {
+            let mut leaves = structure.leaves(ray).unwrap();
+            let holds = leaves.iter().any(|l| refs[l.start as usize..(l.start + l.count) as usize].contains(&hit.prim));
+            assert!(holds || !hit.is_hit(), "{}: {ray:?}", info.name);
+            found += usize::from(hit.is_hit());
+            let visits = leaves.len();
+            leaves.sort_by_key(|l| l.start);
+            leaves.dedup();
+            assert_eq!(leaves.len(), visits, "{}: {ray:?}", info.name);
+        }
+        assert!(found > 100);
     }
 }
 
@@ -257,8 +335,9 @@ fn names_are_found_and_errors_say_what_there_is() {
     let error = |name: &str, primitives: Primitives, options: BuildOptions| {
         build(name, Arc::new(primitives), &options).err().expect("refused").to_string()
     };
-    let text = error("octree", Primitives::default(), BuildOptions::default());
-    assert_eq!(text, "no acceleration structure is called 'octree'; there are wide-bvh, kd-tree, brute-force");
+    let text = error("magic-tree", Primitives::default(), BuildOptions::default());
+    let known: Vec<&str> = STRUCTURES.iter().map(|s| s.name).collect();
+    assert_eq!(text, format!("no acceleration structure is called 'magic-tree'; there are {}", known.join(", ")));
     for info in STRUCTURES {
         let options = BuildOptions { method: "magic".into(), ..BuildOptions::default() };
         let text = error(info.name, Primitives::default(), options);

@@ -6,10 +6,13 @@
 //! Only the ratio C_n / C_t enters.
 //!
 //! Bounds are sorted once per axis; every split divides the sorted lists without disturbing their order (after Wald
-//! and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006).
+//! and Havran, "On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)", 2006). Where triangles are
+//! cut (section 4.1 there, "perfect splits"), those that a plane divides get new bounds on either side, which are sorted
+//! among themselves and merged into the lists.
 
 use crate::bounds::{half_area_f64, padded_bounds, size_f64};
-use crate::options::SplitCandidates;
+use crate::fragment::bounds_within;
+use crate::options::{Clip, SplitCandidates};
 use photinus_geometry::{Aabb, Primitives};
 use rayon::prelude::*;
 
@@ -44,9 +47,13 @@ pub struct Rule {
     pub candidates: SplitCandidates,
     /// See [`crate::BuildOptions::candidate_count`].
     pub count: usize,
+    /// What of a triangle counts.
+    pub clip: Clip,
+    /// Nodes of no more primitives are leaves.
+    pub stop: usize,
 }
 
-/// One bound of a primitive along an axis.
+/// One bound of a primitive along an axis, with the place of the primitive among those of the node.
 type Bound = (f32, u32);
 
 /// The primitives of a node, by lower and by upper bound along each axis, ascending.
@@ -55,10 +62,22 @@ struct Lists {
     highs: [Vec<Bound>; 3],
 }
 
-struct Builder {
-    rule: Rule,
-    /// Padded bounds by id.
+/// The primitives of a node where triangles are cut: what a place in the lists stands for.
+struct Pieces {
+    ids: Vec<u32>,
+    /// Bounds of what lies of each in the cell.
     boxes: Vec<Aabb>,
+}
+
+struct Builder<'a> {
+    primitives: &'a Primitives,
+    rule: Rule,
+    /// Padded bounds by id; where triangles are not cut, ids are the places in the lists.
+    boxes: Vec<Aabb>,
+}
+
+fn by_value(a: &Bound, b: &Bound) -> std::cmp::Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
 }
 
 struct Split {
@@ -77,7 +96,7 @@ pub fn build(primitives: &Primitives, rule: Rule) -> (Built, Aabb) {
     let bounds = ids().fold(Aabb::EMPTY, |b, (_, c)| b.union(c));
     let sorted = |value: fn(&Aabb, usize) -> f32, axis: usize| {
         let mut list: Vec<Bound> = ids().map(|(id, b)| (value(&b, axis), id)).collect();
-        list.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        list.par_sort_unstable_by(by_value);
         list
     };
     let lists = Lists {
@@ -85,31 +104,49 @@ pub fn build(primitives: &Primitives, rule: Rule) -> (Built, Aabb) {
         highs: std::array::from_fn(|axis| sorted(|b, axis| b.max[axis], axis)),
     };
     let budget = lists.lows[0].len() * MAX_REFERENCES_PER_PRIM;
-    let builder = Builder { rule, boxes: boxes.into_iter().map(|b| b.unwrap_or(Aabb::EMPTY)).collect() };
-    (builder.node(lists, bounds, 0, budget), bounds)
+    let boxes: Vec<Aabb> = boxes.into_iter().map(|b| b.unwrap_or(Aabb::EMPTY)).collect();
+    let pieces = match rule.clip {
+        Clip::Box => None,
+        Clip::Exact => Some(Pieces { ids: (0..boxes.len() as u32).collect(), boxes: boxes.clone() }),
+    };
+    (Builder { primitives, rule, boxes }.node(lists, pieces, bounds, 0, budget), bounds)
 }
 
-impl Builder {
+impl Builder<'_> {
     /// The subtree over `lists` in `cell`, of no more than `budget` leaves and references.
-    fn node(&self, lists: Lists, cell: Aabb, depth: u32, budget: usize) -> Built {
+    fn node(&self, lists: Lists, pieces: Option<Pieces>, cell: Aabb, depth: u32, budget: usize) -> Built {
         let count = lists.lows[0].len();
-        let split = if depth < MAX_DEPTH && count > 0 { self.best_split(&lists, &cell) } else { None };
-        let Some(split) = split.filter(|s| s.below.max(1) + s.above.max(1) <= budget) else {
-            let mut ids: Vec<u32> = lists.lows[0].iter().map(|b| b.1).collect();
+        let split = if depth < MAX_DEPTH && count > self.rule.stop { self.best_split(&lists, &cell) } else { None };
+        let leaf = |lists: Lists, pieces: Option<Pieces>| {
+            let places = lists.lows[0].iter().map(|b| b.1);
+            let mut ids: Vec<u32> = match &pieces {
+                None => places.collect(),
+                Some(pieces) => places.map(|place| pieces.ids[place as usize]).collect(),
+            };
             ids.sort_unstable();
-            return Built::Leaf(ids);
+            Built::Leaf(ids)
+        };
+        let Some(split) = split.filter(|s| s.below.max(1) + s.above.max(1) <= budget) else {
+            return leaf(lists, pieces);
         };
         let Split { axis, position, .. } = split;
         let (mut below_cell, mut above_cell) = (cell, cell);
         below_cell.max[axis] = position;
         above_cell.min[axis] = position;
-        let (below, above) = self.divide(lists, &split);
+        let [(below, below_pieces), (above, above_pieces)] = match pieces {
+            None => self.divide(lists, &split).map(|lists| (lists, None)),
+            Some(pieces) => [false, true].map(|up| {
+                let cell = if up { &above_cell } else { &below_cell };
+                let (lists, pieces) = self.divide_exactly(&lists, &pieces, &split, up, cell);
+                (lists, Some(pieces))
+            }),
+        };
         // Shares of the budget do not depend on the order in which subtrees are built.
         let (b, a) = (split.below.max(1), split.above.max(1));
         let below_budget = b + (budget - b - a) * b / (b + a);
         let above_budget = budget - below_budget;
-        let build_below = || self.node(below, below_cell, depth + 1, below_budget);
-        let build_above = || self.node(above, above_cell, depth + 1, above_budget);
+        let build_below = || self.node(below, below_pieces, below_cell, depth + 1, below_budget);
+        let build_above = || self.node(above, above_pieces, above_cell, depth + 1, above_budget);
         let (below, above) = if count >= PARALLEL_PRIMS {
             rayon::join(build_below, build_above)
         } else {
@@ -118,8 +155,52 @@ impl Builder {
         Built::Split { axis, position, children: Box::new([below, above]) }
     }
 
+    /// What reaches to one side of the plane, into `cell`, with the triangles that the plane divides cut to it. What
+    /// proves to lie beside the cell is left out.
+    fn divide_exactly(&self, lists: &Lists, pieces: &Pieces, split: &Split, up: bool, cell: &Aabb) -> (Lists, Pieces) {
+        /// The place of a primitive that is not there.
+        const GONE: u32 = u32::MAX;
+        let Split { axis, position, .. } = *split;
+        let mut out = Pieces { ids: Vec::new(), boxes: Vec::new() };
+        // Where each primitive goes, and whether its bounds are as they were.
+        let mut places = vec![(GONE, false); pieces.ids.len()];
+        let mut cut = Vec::new();
+        // In the order of a list of this node, not of all that the pieces hold: those without bounds are on none.
+        for (_, place) in &lists.lows[0] {
+            let (id, b) = (pieces.ids[*place as usize], pieces.boxes[*place as usize]);
+            let (below, above) = (b.min[axis] < position, b.max[axis] > position);
+            if !(if up { above } else { below }) {
+                continue;
+            }
+            let divided = below && above;
+            let left = if divided { bounds_within(self.primitives, id as usize, cell, &b) } else { Some(b) };
+            let Some(left) = left else { continue };
+            let new = out.ids.len() as u32;
+            places[*place as usize] = (new, !divided);
+            if divided {
+                cut.push((new, left));
+            }
+            out.ids.push(id);
+            out.boxes.push(left);
+        }
+        let merged = |list: &[Bound], value: &dyn Fn(&Aabb) -> f32| {
+            let mut fresh: Vec<Bound> = cut.iter().map(|(place, b)| (value(b), *place)).collect();
+            fresh.sort_unstable_by(by_value);
+            let kept = list.iter().filter_map(|bound| match places[bound.1 as usize] {
+                (place, true) => Some((bound.0, place)),
+                _ => None,
+            });
+            merge(kept, fresh)
+        };
+        let lists = Lists {
+            lows: std::array::from_fn(|k| merged(&lists.lows[k], &|b| b.min[k])),
+            highs: std::array::from_fn(|k| merged(&lists.highs[k], &|b| b.max[k])),
+        };
+        (lists, out)
+    }
+
     /// Primitives that reach below the plane, and above it.
-    fn divide(&self, lists: Lists, split: &Split) -> (Lists, Lists) {
+    fn divide(&self, lists: Lists, split: &Split) -> [Lists; 2] {
         let Split { axis, position, .. } = *split;
         let halves = |list: Vec<Bound>| {
             let (mut below, mut above) = (Vec::with_capacity(split.below), Vec::with_capacity(split.above));
@@ -136,7 +217,7 @@ impl Builder {
         };
         let [(x0, x1), (y0, y1), (z0, z1)] = lists.lows.map(halves);
         let [(u0, u1), (v0, v1), (w0, w1)] = lists.highs.map(halves);
-        (Lists { lows: [x0, y0, z0], highs: [u0, v0, w0] }, Lists { lows: [x1, y1, z1], highs: [u1, v1, w1] })
+        [Lists { lows: [x0, y0, z0], highs: [u0, v0, w0] }, Lists { lows: [x1, y1, z1], highs: [u1, v1, w1] }]
     }
 
     /// The cheapest split of a node, if it is cheaper than a leaf; of equals that on the lowest axis, lowest there.
@@ -188,6 +269,19 @@ impl Builder {
         }
         (best.cost < count as f64).then_some(best)
     }
+}
+
+/// One ascending list of two.
+fn merge(a: impl Iterator<Item = Bound>, b: Vec<Bound>) -> Vec<Bound> {
+    let (mut out, mut b) = (Vec::with_capacity(b.len() + a.size_hint().0), b.into_iter().peekable());
+    for bound in a {
+        while let Some(other) = b.next_if(|other| other.0 < bound.0) {
+            out.push(other);
+        }
+        out.push(bound);
+    }
+    out.extend(b);
+    out
 }
 
 /// Every distinct bound in order, with how many primitives reach below and above it.

@@ -1,16 +1,17 @@
 //! The kd-tree of the thesis (section 3.1.1): split planes by the surface-area heuristic with free costs, three ways to
-//! choose split candidates, cost as the only reason to stop, ordered recursive traversal.
+//! choose split candidates, cost as the only reason to stop, ordered recursive traversal. Triangles may be cut to the cells
+//! they are split over.
 //!
 //! Memory and time stay bounded on any input: no tree is deeper than 96 levels or holds more than 32 leaves and
 //! references for each primitive. Trees by sensible costs come nowhere near either.
 
-mod build;
+pub(super) mod build;
 mod traverse;
 
 use crate::bounds::{half_area_f64, size_f64};
 use crate::laboratory::{LeafVisit, Leaves};
 use crate::list::laboratory;
-use crate::options::{BuildError, BuildOptions};
+use crate::options::{BuildError, BuildOptions, check};
 use crate::structure::{LeafRange, Structure, StructureSummary};
 use build::{Built, Rule};
 use photinus_geometry::{Aabb, Primitives, Ray};
@@ -157,20 +158,10 @@ impl KdTree {
 
 /// Checks the options.
 fn rule(options: &BuildOptions) -> Result<Rule, BuildError> {
-    let bad = |option, value: String, expected| Err(BuildError::BadOption { option, value, expected });
-    let (node, triangle) = (options.node_cost, options.triangle_cost);
-    if !(node >= 0.0 && node.is_finite()) {
-        return bad("the node cost", node.to_string(), "zero or more");
-    }
-    if !(triangle > 0.0 && triangle.is_finite()) {
-        return bad("the triangle cost", triangle.to_string(), "more than zero");
-    }
-    if !(1..=100_000).contains(&options.candidate_count) {
-        return bad("the number of split candidates", options.candidate_count.to_string(), "1 to 100000");
-    }
-    // Rounded to a float, so that equal ratios of different costs are equal.
-    let cost_ratio = f64::from((node / triangle) as f32);
-    Ok(Rule { cost_ratio, candidates: options.candidates, count: options.candidate_count as usize })
+    let count = options.candidate_count;
+    check("the number of split candidates", count, (1..=100_000).contains(&count), "1 to 100000")?;
+    let BuildOptions { candidates, clip, .. } = *options;
+    Ok(Rule { cost_ratio: options.cost_ratio()?, candidates, count: count as usize, clip, stop: 0 })
 }
 
 impl Leaves for KdTree {

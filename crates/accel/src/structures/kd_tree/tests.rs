@@ -1,7 +1,7 @@
 //! The tree's invariants, its equality under equal cost ratios, and its bounds on depth and memory.
 
 use super::*;
-use crate::options::SplitCandidates;
+use crate::options::{Clip, SplitCandidates};
 use photinus_geometry::{Hit, Vec3};
 use photinus_num::{Sampler, StreamKind};
 
@@ -74,6 +74,41 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
         let other = run(threads);
         assert!(one.nodes == other.nodes && one.refs == other.refs);
     }
+}
+
+/// Points of triangles lie in leaves that list them, whatever of their bounds is cut away.
+#[test]
+fn cut_triangles_stay_where_they_are_and_cost_less() {
+    let primitives = soup(10, 2000);
+    let clipped = |clip| BuildOptions { clip, ..BuildOptions::default() };
+    for (_, candidates) in SplitCandidates::ALL {
+        let build = |clip| KdTree::new(&primitives, &BuildOptions { candidates, ..clipped(clip) }).unwrap();
+        let (whole, cut) = (build(Clip::Box), build(Clip::Exact));
+        assert!(cut.summary().sah_cost < whole.summary().sah_cost, "{candidates:?}");
+        let mut cells = Vec::new();
+        cut.visit_cells(|cell| cells.push(*cell));
+        for id in (0..2000).step_by(37) {
+            let [a, b, c] = primitives.triangle(id);
+            for point in [a, b, c, (a + b) * 0.5, (a + b) * 0.3 + c * 0.4] {
+                let mut held = 0;
+                for cell in cells.iter().filter(|cell| cell.bounds.contains(point)) {
+                    let KdCellKind::Leaf(LeafRange { start, count }) = cell.kind else { continue };
+                    held += 1;
+                    assert!(
+                        cut.refs[start as usize..(start + count) as usize].contains(&(id as u32)),
+                        "{id} at {point}"
+                    );
+                }
+                assert!(held > 0);
+            }
+        }
+    }
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| KdTree::new(&soup(11, 6000), &clipped(Clip::Exact)).unwrap())
+    };
+    let (one, many) = (run(1), run(7));
+    assert!(one.nodes == many.nodes && one.refs == many.refs);
 }
 
 #[test]
