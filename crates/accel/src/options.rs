@@ -72,7 +72,7 @@ pub struct BuildOptions {
     pub density: f64,
     /// `compact-grid`: how cells find their lists.
     pub grid_cells: GridCells,
-    /// `octree`: nodes of more primitives are divided; 1 to 255. None: 6.
+    /// `octree`: nodes of more primitives are divided; 1 to 2^20. None: 6.
     pub leaf_size: Option<u32>,
     /// `octree`: levels below the root at most; 0 to 24.
     pub tree_depth: u32,

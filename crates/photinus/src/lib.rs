@@ -20,6 +20,7 @@ pub use compare::{Comparison, compare};
 pub use error::{Error, Result};
 pub use info::{BoundsInfo, CameraInfo, LightKinds, SceneInfo};
 pub use output::{check_writable, remove_abandoned, write_drawing, write_json};
+pub use photinus_accel::{BuildOptions, Clip, GridCells, SplitCandidates};
 pub use photinus_geometry as geometry;
 pub use photinus_image as image;
 pub use photinus_image::tonemap::Tonemap;
@@ -27,7 +28,7 @@ pub use photinus_photons as photons;
 pub use photinus_profile as profile;
 pub use photinus_scene::{LoadOptions, Scene};
 pub use source::open;
-pub use tree::{Tree, TreeOptions, TreeReport, build_tree};
+pub use tree::{Tree, TreeOptions, TreeRays, TreeReport, build_tree};
 pub use tree_drawing::{Ink, Line, TreeDrawing, TreeView, draw_kd_tree};
 
 /// The README's examples are compiled as documentation tests.

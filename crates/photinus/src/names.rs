@@ -1,7 +1,7 @@
 //! Families and the names of their members, for the command line, its help and its errors.
 
 use crate::{Error, Result};
-use photinus_accel::SplitCandidates;
+use photinus_accel::{Clip, GridCells, SplitCandidates};
 use photinus_image::tonemap::{TONEMAPS, Tonemap};
 use photinus_render::bsdf::SurfaceModel;
 use photinus_render::{Aov, Mode};
@@ -124,6 +124,30 @@ const CANDIDATE_CHOICES: [(Member, SplitCandidates); 3] = [
     (Member { name: "sampled", summary: "bounds, evenly picked where there are many" }, SplitCandidates::Sampled),
 ];
 
+/// What of a triangle is put into the cells of a structure.
+pub const CLIP: Family = Family {
+    what: "way to put triangles into cells",
+    default: CLIPS[0].0.name,
+    list: || CLIPS.iter().map(|(member, _)| *member).collect(),
+};
+
+const CLIPS: [(Member, Clip); 2] = [
+    (Member { name: "box", summary: "its bounds: quick to build" }, Clip::Box),
+    (Member { name: "exact", summary: "the part within the cell: fewer tests" }, Clip::Exact),
+];
+
+/// How a compact grid finds the list of a cell.
+pub const GRID_CELLS: Family = Family {
+    what: "kind of grid cells",
+    default: GRID_CELL_KINDS[0].0.name,
+    list: || GRID_CELL_KINDS.iter().map(|(member, _)| *member).collect(),
+};
+
+const GRID_CELL_KINDS: [(Member, GridCells); 2] = [
+    (Member { name: "array", summary: "one offset for every cell" }, GridCells::Array),
+    (Member { name: "hashed", summary: "offsets of filled cells only, by row displacement" }, GridCells::Hashed),
+];
+
 /// What answers ray and photon queries.
 pub const BACKEND: Family = Family {
     what: "backend",
@@ -169,6 +193,22 @@ pub fn surface_model(name: &str) -> Result<SurfaceModel> {
 /// [`Error::UnknownName`].
 pub fn candidates(name: &str) -> Result<SplitCandidates> {
     CANDIDATES.choose(name, &CANDIDATE_CHOICES.map(|(member, choice)| (member.name, choice)))
+}
+
+/// The way to put triangles into cells called `name`.
+///
+/// # Errors
+/// [`Error::UnknownName`].
+pub fn clip(name: &str) -> Result<Clip> {
+    CLIP.choose(name, &CLIPS.map(|(member, clip)| (member.name, clip)))
+}
+
+/// The kind of grid cells called `name`.
+///
+/// # Errors
+/// [`Error::UnknownName`].
+pub fn grid_cells(name: &str) -> Result<GridCells> {
+    GRID_CELLS.choose(name, &GRID_CELL_KINDS.map(|(member, cells)| (member.name, cells)))
 }
 
 /// The tone curve called `name`.

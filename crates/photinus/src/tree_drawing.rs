@@ -14,6 +14,8 @@ pub struct TreeView {
     pub direction: Vec3,
     /// What points up in the picture; replaced where it is parallel to the direction.
     pub up: Vec3,
+    /// The part of the scene that fills the picture; none: all of it. What does not reach into it is left out.
+    pub frame: Option<Aabb>,
     /// Columns of the picture.
     pub width: u32,
     /// Rows of the picture.
@@ -29,6 +31,7 @@ impl Default for TreeView {
         Self {
             direction: Vec3::new(-0.55, -0.45, -0.7),
             up: Vec3::Y,
+            frame: None,
             width: 1280,
             height: 960,
             max_depth: u32::MAX,
@@ -101,10 +104,12 @@ const UPPER_LEVELS: u32 = 6;
 /// Lines that fall together in the picture are drawn once. A tree without primitives gives no line.
 pub fn draw_kd_tree(tree: &KdTree, view: &TreeView) -> TreeDrawing {
     let mut drawing = TreeDrawing { width: view.width, height: view.height, lines: Vec::new(), cut: false };
-    let Some(projection) = Projection::new(&tree.bounds(), view) else { return drawing };
+    let frame = view.frame.unwrap_or(tree.bounds());
+    let Some(projection) = Projection::new(&frame, view) else { return drawing };
     let mut lines = Vec::new();
     tree.visit_cells(|cell| {
-        if cell.depth <= view.max_depth {
+        let within = cell.bounds.min.cmple(frame.max).all() && cell.bounds.max.cmpge(frame.min).all();
+        if cell.depth <= view.max_depth && within {
             cell_lines(cell, |ink, a, b| {
                 lines.push(Line { from: projection.point(a), to: projection.point(b), ink, depth: cell.depth });
             });

@@ -2,10 +2,12 @@
 
 mod members;
 mod render;
+mod structure;
 mod values;
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use structure::StructureArgs;
 
 pub use render::{Output, RenderArgs};
 
@@ -89,19 +91,18 @@ pub struct TreeArgs {
     #[arg(long, value_name = "NAME", default_value = photinus::names::ACCEL.default,
         value_parser = members::parser(photinus::names::ACCEL))]
     pub accel: String,
-    /// Cost of visiting a node in the surface-area heuristic, relative to --triangle-cost
-    #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = values::positive)]
-    pub node_cost: f64,
-    /// Cost of testing a triangle in the surface-area heuristic
-    #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = values::positive)]
-    pub triangle_cost: f64,
-    /// Where a kd-tree may be split
-    #[arg(long, value_name = "NAME", default_value = photinus::names::CANDIDATES.default,
-        value_parser = members::parser(photinus::names::CANDIDATES))]
-    pub candidates: String,
+    #[command(flatten)]
+    pub structure: StructureArgs,
     /// Draw the tree into a picture; kd-trees only
     #[arg(long, value_name = "OUT.{png,svg}", value_parser = values::drawing)]
     pub draw: Option<PathBuf>,
+    /// Where the viewer of the drawing looks, in scene coordinates [default: from above, at an angle]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true, requires = "draw")]
+    pub view: Option<[f32; 3]>,
+    /// The part of the scene that fills the drawing: the lower and the upper corner of a box [default: all]
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = values::corners, allow_hyphen_values = true,
+        requires = "draw")]
+    pub draw_box: Option<[f32; 6]>,
     /// Print one JSON document
     #[arg(long)]
     pub json: bool,

@@ -1,6 +1,7 @@
 //! `photinus render`: what is rendered, how, for how long, and where the results go.
 
 use super::members::parser;
+use super::structure::StructureArgs;
 use super::values::{self, CameraValue, Size};
 use clap::Args;
 use photinus::names;
@@ -91,6 +92,8 @@ pub struct RenderArgs {
     /// Configuration of the hardware behind --backend (not built yet)
     #[arg(long, value_name = "NAME|FILE.toml", help_heading = "Members")]
     pub hardware: Option<String>,
+    #[command(flatten)]
+    pub structure: StructureArgs,
     /// Replace spheres by triangles that are off by at most E scene units
     #[arg(long, value_name = "E", value_parser = values::positive_f32, help_heading = "Members")]
     pub tessellate: Option<f32>,

@@ -49,6 +49,20 @@ pub fn crop(text: &str) -> Result<[u32; 4], String> {
     if window[2] == 0 || window[3] == 0 { Err("the window is empty".into()) } else { Ok(window) }
 }
 
+/// Three numbers that are not all zero.
+pub fn direction(text: &str) -> Result<[f32; 3], String> {
+    let direction: [f32; 3] = numbers(text).ok_or("write three numbers, as in 0,-1,0.5")?;
+    let good = direction.iter().all(|x| x.is_finite()) && direction != [0.0; 3];
+    if good { Ok(direction) } else { Err("the numbers must be finite, and one of them other than zero".into()) }
+}
+
+/// Six numbers: the lower and the upper corner of a box with a volume.
+pub fn corners(text: &str) -> Result<[f32; 6], String> {
+    let corners: [f32; 6] = numbers(text).ok_or("write six numbers: the lower corner x,y,z and the upper one")?;
+    let good = corners.iter().all(|x| x.is_finite()) && (0..3).all(|k| corners[k] < corners[3 + k]);
+    if good { Ok(corners) } else { Err("every number of the lower corner must be less than that of the upper".into()) }
+}
+
 /// Ten numbers: origin, target, up, opening in degrees.
 pub fn camera(text: &str) -> Result<CameraValue, String> {
     const FORM: &str = "write ten numbers: origin x,y,z, target x,y,z, up x,y,z and the opening in degrees";

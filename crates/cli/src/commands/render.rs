@@ -171,6 +171,7 @@ fn options(args: &RenderArgs, begun: Instant) -> std::result::Result<RenderOptio
         },
         accel: args.accel.clone(),
         intersect: args.intersect.clone(),
+        build: args.structure.options()?,
         surface_model: names::surface_model(&args.surface_model)?,
         size: args.size.map(|size| [size.width, size.height]),
         view: args.camera.map(|camera| View {

@@ -3,30 +3,33 @@
 use crate::args::TreeArgs;
 use crate::failure::{Outcome, Result};
 use crate::report;
+use photinus::geometry::Aabb;
 use photinus::{TreeOptions, TreeView};
 
 /// Builds and describes.
 pub fn run(args: &TreeArgs) -> Result {
     let scene = super::open(&args.scene, args.source.allow_outside)?;
     super::warn(&scene);
-    let options = TreeOptions {
-        accel: args.accel.clone(),
-        node_cost: args.node_cost,
-        triangle_cost: args.triangle_cost,
-        candidates: args.candidates.clone(),
-    };
+    let options = TreeOptions { accel: args.accel.clone(), build: args.structure.options()? };
     if let Some(path) = &args.draw {
         photinus::check_writable(path)?;
     }
     let tree = photinus::build_tree(scene, &options)?;
     if let Some(path) = &args.draw {
-        photinus::write_drawing(path, &tree.draw(&TreeView::default())?)?;
+        let mut view = TreeView::default();
+        if let Some(direction) = args.view {
+            view.direction = direction.into();
+        }
+        if let Some([x, y, z, u, v, w]) = args.draw_box {
+            view.frame = Some(Aabb { min: [x, y, z].into(), max: [u, v, w].into() });
+        }
+        photinus::write_drawing(path, &tree.draw(&view)?)?;
     }
     let report = &tree.report;
     if args.json {
         report::json(report)?;
     } else {
-        let structure = &report.structure;
+        let (structure, rays) = (&report.structure, &report.rays);
         report::table(&[
             ("scene", report.scene.clone()),
             ("structure", structure.name.to_owned()),
@@ -41,6 +44,10 @@ pub fn run(args: &TreeArgs) -> Result {
             ("primitives a leaf", format!("{:.2}", structure.prims_per_leaf)),
             ("SAH cost", format!("{:.2}", structure.sah_cost)),
             ("memory", report::bytes(structure.bytes)),
+            ("rays of the camera", format!("{} ({} hit)", report::count(rays.rays), report::count(rays.hits))),
+            ("nodes a ray", format!("{:.2}", rays.nodes_per_ray)),
+            ("leaves a ray", format!("{:.2}", rays.leaves_per_ray)),
+            ("tests a ray", format!("{:.2}", rays.tests_per_ray)),
         ])?;
     }
     Ok(Outcome::Done)

@@ -3,6 +3,7 @@
 use super::Stop;
 use crate::names::{ACCEL, INTERSECT, SEARCH};
 use crate::{Error, Result};
+use photinus_accel::BuildOptions;
 use photinus_geometry::Vec3;
 use photinus_render::bsdf::SurfaceModel;
 use photinus_render::{Mode, Settings};
@@ -32,6 +33,8 @@ pub struct RenderOptions {
     pub accel: String,
     /// Ray-triangle method, by name.
     pub intersect: String,
+    /// How the acceleration structure is built; its method is the one above.
+    pub build: BuildOptions,
     /// What surfaces do.
     pub surface_model: SurfaceModel,
     /// Pixels across and down; none: the scene's.
@@ -56,6 +59,7 @@ impl Default for RenderOptions {
             settings: Settings::default(),
             accel: ACCEL.default.to_owned(),
             intersect: INTERSECT.default.to_owned(),
+            build: BuildOptions::default(),
             surface_model: SurfaceModel::default(),
             size: None,
             view: None,

@@ -100,7 +100,7 @@ impl Session {
         let (begun, cpu) = (Instant::now(), cpu_seconds());
         let mut world = pool.install(|| {
             let options = &options;
-            let build = BuildOptions { method: options.intersect.clone(), ..BuildOptions::default() };
+            let build = BuildOptions { method: options.intersect.clone(), ..options.build.clone() };
             Compiled::new(scene).build_structure(options.surface_model, |primitives| {
                 photinus_accel::build(&options.accel, primitives, &build)
             })

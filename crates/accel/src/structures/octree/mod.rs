@@ -75,7 +75,7 @@ pub fn build(primitives: Arc<Primitives>, options: &BuildOptions) -> Result<Box<
 impl Octree {
     fn new(primitives: &Primitives, options: &BuildOptions) -> Result<Self, BuildError> {
         let (leaf_size, depth) = (options.leaf_size.unwrap_or(LEAF_SIZE), options.tree_depth);
-        check("the leaf size", leaf_size, (1..=255).contains(&leaf_size), "1 to 255")?;
+        check("the leaf size", leaf_size, (1..=1 << 20).contains(&leaf_size), "1 to 2^20")?;
         check("the depth of the tree", depth, depth <= MAX_DEPTH, "0 to 24")?;
         let rule = Rule { leaf_size: leaf_size as usize, max_depth: depth, clip: options.clip };
         let (built, bounds, cube) = build::build(primitives, rule);
@@ -124,7 +124,7 @@ impl Leaves for Octree {
         self.walk_cells(ray, node, leaf);
     }
 
-    /// The cost is that of the tests of a ray through the cube, parts being met by chance as their area says.
+    /// The cost is that of the tests of a ray through the bounds, parts of them being met by chance as their area says.
     fn summary(&self) -> StructureSummary {
         let mut out = StructureSummary {
             name: NAME,
@@ -133,7 +133,8 @@ impl Leaves for Octree {
             ..StructureSummary::default()
         };
         let half_area = |b: &Aabb| half_area_f64(size_f64(b));
-        let whole = half_area(&self.cube);
+        let whole = half_area(&self.bounds);
+        let within = |cell: &Aabb| Aabb { min: cell.min.max(self.bounds.min), max: cell.max.min(self.bounds.max) };
         self.visit_cells(|depth, cell, node| {
             out.depth = out.depth.max(depth);
             match node {
@@ -141,7 +142,8 @@ impl Leaves for Octree {
                 Unpacked::Leaf(refs) if refs.is_empty() => out.empty_leaves += 1,
                 Unpacked::Leaf(refs) => {
                     out.leaves += 1;
-                    out.sah_cost += if whole > 0.0 { half_area(cell) / whole * refs.len() as f64 } else { 0.0 };
+                    out.sah_cost +=
+                        if whole > 0.0 { half_area(&within(cell)) / whole * refs.len() as f64 } else { 0.0 };
                 }
             }
         });
