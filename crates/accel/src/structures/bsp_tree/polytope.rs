@@ -30,8 +30,25 @@ impl Knife {
     }
 }
 
-/// A face: its corners, counter-clockwise seen from outside.
-type Face = Vec<Point>;
+/// Corners of a face, counter-clockwise seen from outside.
+type Corners = Vec<Point>;
+
+/// A face.
+#[derive(Clone, Debug)]
+struct Face {
+    corners: Corners,
+    /// See [`twice_area`].
+    twice_area: Point,
+    /// Length of that.
+    size: f64,
+}
+
+impl Face {
+    fn new(corners: Corners) -> Self {
+        let twice_area = twice_area(&corners);
+        Self { corners, twice_area, size: length(&twice_area) }
+    }
+}
 
 /// A convex cell.
 #[derive(Clone, Debug)]
@@ -54,25 +71,42 @@ fn length(v: &Point) -> f64 {
     dot(v, v).sqrt()
 }
 
-/// The part of a face above a plane; points in which edges cross the plane go to `crossed`.
-fn part_above(face: &[Point], height: impl Fn(&Point) -> f64, mut crossed: impl FnMut(Point)) -> Face {
-    let mut out = Face::with_capacity(face.len() + 1);
-    let Some(mut last) = face.last() else { return out };
+/// Hands out the corners of the part of a face above a plane, and whether an edge crosses the plane there.
+#[inline(always)]
+fn part_above(face: &[Point], height: impl Fn(&Point) -> f64, mut corner_at: impl FnMut(Point, bool)) {
+    let Some(mut last) = face.last() else { return };
     let mut last_height = height(last);
     for corner in face {
         let this_height = height(corner);
         if (last_height < 0.0) != (this_height < 0.0) {
             let part = last_height / (last_height - this_height);
-            let between = std::array::from_fn(|k| last[k] + (corner[k] - last[k]) * part);
-            out.push(between);
-            crossed(between);
+            corner_at(std::array::from_fn(|k| last[k] + (corner[k] - last[k]) * part), true);
         }
         if !(this_height < 0.0) {
-            out.push(*corner);
+            corner_at(*corner, false);
         }
         (last, last_height) = (corner, this_height);
     }
-    out
+}
+
+/// [`twice_area`] of the part of a face above a plane.
+fn twice_area_above(face: &[Point], knife: &Knife) -> Point {
+    let (mut sum, mut first, mut last) = ([0.0; 3], None, [0.0; 3]);
+    part_above(
+        face,
+        |p| knife.height(p),
+        |p, _| {
+            match &first {
+                None => first = Some(p),
+                Some(first) => {
+                    let part = cross(&minus(&last, first), &minus(&p, first));
+                    sum = std::array::from_fn(|k| sum[k] + part[k]);
+                }
+            }
+            last = p;
+        },
+    );
+    sum
 }
 
 impl Polytope {
@@ -95,15 +129,15 @@ impl Polytope {
                     corner(at, min[u], max[v]),
                 ]
             };
-            faces.push(around(max[axis]));
-            faces.push(around(min[axis]).into_iter().rev().collect());
+            faces.push(Face::new(around(max[axis])));
+            faces.push(Face::new(around(min[axis]).into_iter().rev().collect()));
         }
         Self { faces }
     }
 
     /// Twice its surface area.
     pub fn twice_area(&self) -> f64 {
-        self.faces.iter().map(|face| length(&twice_area(face))).sum()
+        self.faces.iter().map(|face| face.size).sum()
     }
 
     /// Twice the surface areas of the parts below and above a plane, the cut counted in both.
@@ -112,19 +146,18 @@ impl Polytope {
         // The outward areas of a closed body add up to nothing: what is missing is the cut.
         let mut open = [0.0; 3];
         for face in &self.faces {
-            let whole = twice_area(face);
-            let heights = face.iter().map(|p| knife.height(p));
+            let heights = face.corners.iter().map(|p| knife.height(p));
             let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-            let part = if low >= 0.0 {
-                whole
-            } else if high <= 0.0 {
-                [0.0; 3]
-            } else {
-                twice_area(&part_above(face, |p| knife.height(p), |_| ()))
-            };
+            if high <= 0.0 {
+                below += face.size;
+                continue;
+            }
+            let part = if low >= 0.0 { face.twice_area } else { twice_area_above(&face.corners, knife) };
             open = std::array::from_fn(|k| open[k] + part[k]);
-            above += length(&part);
-            below += length(&minus(&whole, &part));
+            // Parts of a face lie in one plane: their sizes add up.
+            let size = if low >= 0.0 { face.size } else { length(&part) };
+            above += size;
+            below += face.size - size;
         }
         let cut = length(&open);
         [below + cut, above + cut]
@@ -134,22 +167,35 @@ impl Polytope {
     pub fn cut(&self, knife: &Knife) -> [Self; 2] {
         let mut rim = Vec::new();
         let part = |sign: f64, rim: &mut Vec<Point>| {
-            let faces = self.faces.iter().map(|face| part_above(face, |p| sign * knife.height(p), |p| rim.push(p)));
-            faces.filter(|face| face.len() >= 3).collect::<Vec<_>>()
+            let faces = self.faces.iter().map(|face| {
+                let mut corners = Corners::with_capacity(face.corners.len() + 1);
+                part_above(
+                    &face.corners,
+                    |p| sign * knife.height(p),
+                    |p, crossed| {
+                        corners.push(p);
+                        if crossed {
+                            rim.push(p);
+                        }
+                    },
+                );
+                corners
+            });
+            faces.filter(|corners| corners.len() >= 3).map(Face::new).collect::<Vec<_>>()
         };
         let mut below = part(-1.0, &mut Vec::new());
         let mut above = part(1.0, &mut rim);
         if rim.len() >= 3 {
             let cut = around(&knife.normal, rim);
-            above.push(cut.iter().rev().copied().collect());
-            below.push(cut);
+            above.push(Face::new(cut.iter().rev().copied().collect()));
+            below.push(Face::new(cut));
         }
         [Self { faces: below }, Self { faces: above }]
     }
 }
 
 /// Points of a convex rim in counter-clockwise order seen against the normal.
-fn around(normal: &Point, mut points: Vec<Point>) -> Face {
+fn around(normal: &Point, mut points: Vec<Point>) -> Corners {
     let inv_count = 1.0 / points.len() as f64;
     let center: Point = std::array::from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() * inv_count);
     let least = (0..3).min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs())).unwrap_or(0);
@@ -205,7 +251,7 @@ mod tests {
                 let sum = part
                     .faces
                     .iter()
-                    .map(|f| twice_area(f))
+                    .map(|f| f.twice_area)
                     .fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
                 assert!(length(&sum) < 1e-9 && (part.twice_area() - area).abs() < 1e-9, "{normal:?}: {sum:?}");
             }
