@@ -43,7 +43,18 @@ fn scenes() {
 fn tree() {
     let document = json(&run(&["tree", "cornell", "--json"]));
     has(&document, &["scene", "triangles", "build_secs", "name", "depth", "nodes", "leaves", "references", "bytes"]);
+    has(&document, &["rays.rays", "rays.hits", "rays.nodes_per_ray", "rays.leaves_per_ray", "rays.tests_per_ray"]);
     success(&run(&["tree", "cornell", "--accel", "brute-force"]));
+    let tests = |flags: &[&str]| {
+        let words = [&["tree", "texture-1210", "--json"], flags].concat();
+        json(&run(&words))["rays"]["tests_per_ray"].as_f64().unwrap()
+    };
+    for accel in ["kd-tree", "octree", "uniform-grid", "compact-grid"] {
+        let whole = tests(&["--accel", accel]);
+        assert!(tests(&["--accel", accel, "--clip", "exact"]) < whole, "{accel}");
+    }
+    assert!(tests(&["--accel", "octree", "--leaf-size", "60"]) > tests(&["--accel", "octree"]));
+    assert!(tests(&["--accel", "uniform-grid", "--density", "0.1"]) > tests(&["--accel", "uniform-grid"]));
 }
 
 #[test]
@@ -56,6 +67,12 @@ fn trees_are_drawn() {
     assert!(svg.starts_with("<svg ") && svg.matches("<path ").count() > 3);
     let png = photinus::image::read_image(folder.path().join("a.png")).unwrap();
     assert!(png.pixels.iter().any(|pixel| pixel[0] > 0.1), "nothing is drawn");
+    let above = ["tree", "water-lily-1426", "--accel", "kd-tree", "--draw", "above.svg", "--view", "0,-1,0"];
+    success(&run_in(folder.path(), &above));
+    success(&run_in(folder.path(), &[&above[..4], &["--draw", "part.svg", "--draw-box=-1,-1,-1,1,1,1"]].concat()));
+    for other in ["above.svg", "part.svg"] {
+        assert_ne!(svg, std::fs::read_to_string(folder.path().join(other)).unwrap(), "{other}");
+    }
     let refused = common::refused(&run_in(folder.path(), &["tree", "cornell", "--draw", "b.png"]), 1);
     assert!(refused.contains("--draw: wide-bvh is not drawn; use --accel kd-tree"), "{refused}");
 }

@@ -45,10 +45,12 @@ fn help_is_as_recorded() {
 
 #[test]
 fn every_member_of_every_family_is_there() {
-    use photinus::names::{ACCEL, AOV, BACKEND, CANDIDATES, Family, INTERSECT, MODE, SEARCH, SURFACE_MODEL, TONEMAP};
+    use photinus::names::{
+        ACCEL, AOV, BACKEND, CANDIDATES, CLIP, Family, GRID_CELLS, INTERSECT, MODE, SEARCH, SURFACE_MODEL, TONEMAP,
+    };
     let pages: [(&str, &[Family]); 2] = [
         ("render", &[ACCEL, AOV, BACKEND, INTERSECT, MODE, SEARCH, SURFACE_MODEL, TONEMAP]),
-        ("tree", &[ACCEL, CANDIDATES]),
+        ("tree", &[ACCEL, CANDIDATES, CLIP, GRID_CELLS]),
     ];
     for (command, families) in pages {
         let said = success(&run(&[command, "--help"]));

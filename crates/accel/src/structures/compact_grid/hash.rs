@@ -3,8 +3,10 @@
 use crate::grid::Lists;
 use std::ops::Range;
 
-/// Shifts tried for a row before it goes behind all others.
+/// Shifts tried for a row before it goes behind all others: so many, or its share of those below.
 const MAX_TRIES: usize = 4096;
+/// Shifts tried for all rows together, where there are few.
+const ALL_TRIES: usize = 1 << 27;
 
 /// Offsets of the lists of cells with primitives, by row and place in the row.
 pub(super) struct Rows {
@@ -38,7 +40,8 @@ impl Rows {
         // Full rows first: the others are short enough for the gaps.
         let mut order: Vec<usize> = (0..rows.len()).filter(|row| !rows[*row].is_empty()).collect();
         order.sort_by_key(|row| std::cmp::Reverse(rows[*row].len()));
-        let mut table = Table { owners: Vec::new(), gap: 0 };
+        let max_tries = MAX_TRIES.max(ALL_TRIES / order.len().max(1));
+        let mut table = Table { owners: Vec::new(), gap: 0, max_tries };
         let mut shifts = vec![0; rows.len()];
         for row in order {
             shifts[row] = table.place(&rows[row], (row * width) as u32);
@@ -82,6 +85,8 @@ struct Table {
     owners: Vec<u32>,
     /// No place before this is free.
     gap: usize,
+    /// Shifts tried for a row.
+    max_tries: usize,
 }
 
 impl Table {
@@ -91,7 +96,7 @@ impl Table {
         let fits = |at: usize| {
             places.iter().all(|x| self.owners.get(at + (x - lead) as usize).is_none_or(|owner| *owner == FREE))
         };
-        let tries = self.gap..self.owners.len().min(self.gap + MAX_TRIES);
+        let tries = self.gap..self.owners.len().min(self.gap + self.max_tries);
         let at = tries.into_iter().find(|at| fits(*at)).unwrap_or(self.owners.len());
         let end = at + (places[places.len() - 1] - lead) as usize + 1;
         if end > self.owners.len() {

@@ -30,14 +30,18 @@ pub struct Rule {
     pub clip: Clip,
 }
 
-/// The middle of a cell.
+/// The middle of an interval.
 #[inline(always)]
-pub fn middle(cell: &Aabb) -> Vec3 {
-    cell.min * 0.5 + cell.max * 0.5
+pub fn middle_of(low: f32, high: f32) -> f32 {
+    low * 0.5 + high * 0.5
+}
+
+/// The middle of a cell.
+fn middle(cell: &Aabb) -> Vec3 {
+    Vec3::from(std::array::from_fn(|k| middle_of(cell.min[k], cell.max[k])))
 }
 
 /// One of the eight parts of a cell.
-#[inline(always)]
 pub fn part(cell: &Aabb, index: usize) -> Aabb {
     let (mut out, middle) = (*cell, middle(cell));
     for axis in 0..3 {

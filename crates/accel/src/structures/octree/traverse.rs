@@ -1,87 +1,98 @@
-//! The walk of a ray: at every node it is clipped by the three planes through the middle, one after the other, and
-//! goes on in the parts that it meets, in the order of its direction.
+//! The walk of a ray: at every node it is clipped by the three planes through the middle, one after the other, nearest
+//! side first, so that it meets the parts in its own order. Sides that come later wait on a stack.
 
-use super::build::{middle, part};
-use super::{Octree, Unpacked};
+use super::build::middle_of;
+use super::{MAX_DEPTH, Octree, Unpacked};
 use crate::laboratory::LeafVisit;
 use crate::planes::{Sides, clip, sides};
 use arrayvec::ArrayVec;
-use photinus_geometry::{Aabb, Ray};
+use photinus_geometry::Ray;
 use std::ops::ControlFlow;
 
-/// A piece of the ray with the index bits of the parts that it is known to lie in.
+/// A piece of the ray within the parts of a node that are left after the planes across the first few axes.
 #[derive(Clone, Copy)]
 struct Piece {
+    /// Index of the node's first part.
+    first: usize,
+    /// Bits of the parts' index that are known.
     bits: usize,
+    /// The axis whose plane comes next; 3 where one part is left.
+    axis: usize,
+    /// The cell of the parts.
+    min: [f32; 3],
+    max: [f32; 3],
+    /// Where the ray enters and leaves it.
     enter: f32,
     leave: f32,
 }
 
-struct Walk<'a, N, L> {
-    tree: &'a Octree,
-    ray: &'a Ray,
-    /// Where the search ends: the end of the ray or the nearest hit.
-    end: f32,
-    node: N,
-    leaf: L,
-}
-
 impl Octree {
     /// Calls `node` at every interior node and `leaf` at every leaf with primitives, front to back, until it breaks.
+    #[inline(always)]
     pub(super) fn walk_cells(
         &self,
         ray: &Ray,
-        node: impl FnMut(),
-        leaf: impl FnMut(LeafVisit) -> ControlFlow<(), f32>,
+        mut node: impl FnMut(),
+        mut leaf: impl FnMut(LeafVisit) -> ControlFlow<(), f32>,
     ) {
         let Some((enter, leave)) = clip(ray, &self.bounds) else { return };
-        let mut walk = Walk { tree: self, ray, end: leave, node, leaf };
-        // Whether it came to the end or was told to stop is the same here.
-        let _ = walk.visit(0, &self.cube, enter, leave);
+        let (origin, dir) = (ray.origin.to_array(), ray.dir.to_array());
+        let mut end = leave;
+        let (min, max) = (self.cube.min.to_array(), self.cube.max.to_array());
+        // The root counts as the first of parts.
+        let mut piece = Piece { first: 0, bits: 0, axis: 3, min, max, enter, leave };
+        let mut waiting = ArrayVec::<Piece, { 3 * MAX_DEPTH as usize }>::new();
+        loop {
+            while piece.axis < 3 {
+                let axis = piece.axis;
+                let middle = middle_of(piece.min[axis], piece.max[axis]);
+                let mut part = Piece { axis: axis + 1, ..piece };
+                let above = match sides(middle - origin[axis], dir[axis], piece.enter, piece.leave) {
+                    Sides::Below => false,
+                    Sides::Above => true,
+                    Sides::Both { above_first, first, last } => {
+                        let mut far = Piece { enter: piece.enter.max(first), ..part };
+                        far.take(axis, middle, !above_first);
+                        waiting.push(far);
+                        part.leave = piece.leave.min(last);
+                        above_first
+                    }
+                };
+                part.take(axis, middle, above);
+                piece = part;
+            }
+            match self.nodes[piece.first + piece.bits].unpack() {
+                Unpacked::Interior(first) => {
+                    node();
+                    piece = Piece { first, bits: 0, axis: 0, ..piece };
+                    continue;
+                }
+                Unpacked::Leaf(refs) if refs.is_empty() => {}
+                Unpacked::Leaf(refs) => {
+                    // Pieces that begin behind the end are left out below, which is as good as an exit.
+                    let ControlFlow::Continue(left) = leaf(LeafVisit { refs, exit: f32::NEG_INFINITY }) else { return };
+                    end = end.min(left);
+                }
+            }
+            piece = loop {
+                let Some(next) = waiting.pop() else { return };
+                if next.enter <= end && next.enter <= next.leave {
+                    break next;
+                }
+            };
+        }
     }
 }
 
-impl<N: FnMut(), L: FnMut(LeafVisit) -> ControlFlow<(), f32>> Walk<'_, N, L> {
-    /// Visits a node; no deeper than the tree, which has 24 levels at most.
-    fn visit(&mut self, index: usize, cell: &Aabb, enter: f32, leave: f32) -> ControlFlow<()> {
-        match self.tree.nodes[index].unpack() {
-            Unpacked::Leaf(refs) => {
-                if !refs.is_empty() {
-                    // Pieces that begin behind the end are left out below, which is as good as an exit.
-                    let left = (self.leaf)(LeafVisit { refs, exit: f32::NEG_INFINITY })?;
-                    self.end = self.end.min(left);
-                }
-            }
-            Unpacked::Interior(first) => {
-                (self.node)();
-                let middle = middle(cell);
-                let mut pieces = ArrayVec::<Piece, 8>::new();
-                pieces.push(Piece { bits: 0, enter, leave });
-                for axis in 0..3 {
-                    let (plane, d) = (middle[axis] - self.ray.origin[axis], self.ray.dir[axis]);
-                    let mut cut = ArrayVec::<Piece, 8>::new();
-                    for piece in pieces {
-                        let above = 1 << axis;
-                        match sides(plane, d, piece.enter, piece.leave) {
-                            Sides::Below => cut.push(piece),
-                            Sides::Above => cut.push(Piece { bits: piece.bits | above, ..piece }),
-                            Sides::Both { above_first, first, last } => {
-                                let [near, far] = if above_first { [above, 0] } else { [0, above] };
-                                let (leave, enter) = (piece.leave.min(last), piece.enter.max(first));
-                                cut.push(Piece { bits: piece.bits | near, leave, ..piece });
-                                cut.push(Piece { bits: piece.bits | far, enter, ..piece });
-                            }
-                        }
-                    }
-                    pieces = cut;
-                }
-                for Piece { bits, enter, leave } in pieces {
-                    if enter <= leave && enter <= self.end {
-                        self.visit(first + bits, &part(cell, bits), enter, leave)?;
-                    }
-                }
-            }
+impl Piece {
+    /// Leaves the parts on one side of the middle.
+    #[inline(always)]
+    fn take(&mut self, axis: usize, middle: f32, above: bool) {
+        if above {
+            self.min[axis] = middle;
+            self.bits |= 1 << axis;
+        } else {
+            self.max[axis] = middle;
         }
-        ControlFlow::Continue(())
     }
 }
