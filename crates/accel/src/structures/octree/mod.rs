@@ -2,7 +2,8 @@
 //! Fast Ray Tracing", IEEE CG&A 4(10), 1984), walked by clipping the ray to the eight parts, nearest first.
 //!
 //! A node is divided while it holds more primitives than a leaf should (`--leaf-size`), lies above the last level
-//! (`--tree-depth`) and primitives and empty leaves stay below 32 for each primitive.
+//! (`--tree-depth`), its parts hold together less than four times what it does, and primitives and empty leaves stay
+//! below 32 for each primitive.
 
 mod build;
 mod traverse;
