@@ -18,7 +18,7 @@ const MAX_REFERENCES_PER_PRIM: usize = 32;
 /// What lies of a primitive in a cell.
 #[derive(Clone)]
 enum Shape {
-    Triangle(Polygon),
+    Triangle(Box<Polygon>),
     /// Middle and half the edges of the box around a sphere.
     Sphere(Point, Point),
 }
@@ -51,7 +51,7 @@ impl Fragment {
                 left.between(k, f64::from(cell.min[k]) - margins[k], f64::from(cell.max[k]) + margins[k])
             }),
         };
-        (!shape.is_empty()).then_some(Self { id, shape: Shape::Triangle(shape), margins })
+        (!shape.is_empty()).then_some(Self { id, shape: Shape::Triangle(Box::new(shape)), margins })
     }
 
     /// How far hits may lie off along a direction.
@@ -86,7 +86,7 @@ impl Fragment {
             Shape::Triangle(polygon) if below && above => {
                 let left = polygon.above(|p| sign * knife.height(p) + margin);
                 // What rounds to nothing is near enough to stay.
-                let shape = Shape::Triangle(if left.is_empty() { polygon.clone() } else { left });
+                let shape = if left.is_empty() { self.shape.clone() } else { Shape::Triangle(Box::new(left)) };
                 Self { shape, ..self.clone() }
             }
             _ => self.clone(),
