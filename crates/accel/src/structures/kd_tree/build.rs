@@ -10,6 +10,7 @@
 //! cut (section 4.1 there, "perfect splits"), those that a plane divides get new bounds on either side, which are sorted
 //! among themselves and merged into the lists.
 
+use super::quadratic;
 use crate::bounds::{half_area_f64, padded_bounds, size_f64};
 use crate::fragment::bounds_within;
 use crate::options::{Clip, SplitCandidates};
@@ -263,6 +264,9 @@ impl Builder<'_> {
                             consider(p, below(p), above(p));
                         }
                     }
+                }
+                SplitCandidates::Quadratic => {
+                    quadratic::candidates([low, high], [u, v], |p| [below(p), above(p)], consider);
                 }
                 SplitCandidates::Bounds | SplitCandidates::Sampled => sweep(lows, highs, consider),
             }

@@ -6,6 +6,7 @@
 //! references for each primitive. Trees by sensible costs come nowhere near either.
 
 pub(super) mod build;
+mod quadratic;
 mod traverse;
 
 use crate::bounds::{half_area_f64, size_f64};
