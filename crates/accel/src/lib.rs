@@ -7,6 +7,8 @@
 pub mod bounds;
 mod fragment;
 mod grid;
+mod hierarchy;
+pub mod instances;
 mod laboratory;
 pub mod list;
 pub mod options;
@@ -15,11 +17,19 @@ mod structure;
 pub mod structures {
     //! The members: one acceleration structure a file or folder.
 
+    pub mod bih;
+    pub mod binned_bvh;
+    pub mod bkd_tree;
+    pub mod box_bvh;
     pub mod brute_force;
     pub mod bsp_tree;
     pub mod compact_grid;
+    pub mod ellipsoid_bvh;
     pub mod kd_tree;
     pub mod octree;
+    pub mod spatial_split_bvh;
+    pub mod sphere_bvh;
+    pub mod two_level;
     pub mod uniform_grid;
     pub mod wide_bvh;
 }

@@ -3,7 +3,10 @@
 use crate::laboratory::{Laboratory, Leaves};
 use crate::options::{BuildError, BuildOptions};
 use crate::structure::Structure;
-use crate::structures::{brute_force, bsp_tree, compact_grid, kd_tree, octree, uniform_grid, wide_bvh};
+use crate::structures::{
+    bih, binned_bvh, bkd_tree, box_bvh, brute_force, bsp_tree, compact_grid, ellipsoid_bvh, kd_tree, octree,
+    spatial_split_bvh, sphere_bvh, two_level, uniform_grid, wide_bvh,
+};
 use photinus_geometry::{MAX_PRIMITIVES, Primitives};
 use photinus_intersect::{LeafTester, METHODS, MethodInfo, find_method};
 use std::sync::Arc;
@@ -48,6 +51,44 @@ pub const STRUCTURES: &[StructureInfo] = &[
         summary: compact_grid::SUMMARY,
         source: compact_grid::SOURCE,
         build: compact_grid::build,
+    },
+    StructureInfo {
+        name: binned_bvh::NAME,
+        summary: binned_bvh::SUMMARY,
+        source: binned_bvh::SOURCE,
+        build: binned_bvh::build,
+    },
+    StructureInfo {
+        name: spatial_split_bvh::NAME,
+        summary: spatial_split_bvh::SUMMARY,
+        source: spatial_split_bvh::SOURCE,
+        build: spatial_split_bvh::build,
+    },
+    StructureInfo {
+        name: bkd_tree::NAME,
+        summary: bkd_tree::SUMMARY,
+        source: bkd_tree::SOURCE,
+        build: bkd_tree::build,
+    },
+    StructureInfo { name: bih::NAME, summary: bih::SUMMARY, source: bih::SOURCE, build: bih::build },
+    StructureInfo {
+        name: ellipsoid_bvh::NAME,
+        summary: ellipsoid_bvh::SUMMARY,
+        source: ellipsoid_bvh::SOURCE,
+        build: ellipsoid_bvh::build,
+    },
+    StructureInfo {
+        name: sphere_bvh::NAME,
+        summary: sphere_bvh::SUMMARY,
+        source: sphere_bvh::SOURCE,
+        build: sphere_bvh::build,
+    },
+    StructureInfo { name: box_bvh::NAME, summary: box_bvh::SUMMARY, source: box_bvh::SOURCE, build: box_bvh::build },
+    StructureInfo {
+        name: two_level::NAME,
+        summary: two_level::SUMMARY,
+        source: two_level::SOURCE,
+        build: two_level::build,
     },
     StructureInfo {
         name: brute_force::NAME,

@@ -13,12 +13,19 @@ pub enum SplitCandidates {
     /// As `Bounds` in nodes of few primitives; in others, evenly picked from the ordered bounds.
     #[default]
     Sampled,
+    /// Where pieces of parabolas through a few samples are lowest (Hunt, Mark, Stoll, RT 2006): as `Sampled` in quality,
+    /// with fewer candidates.
+    Quadratic,
 }
 
 impl SplitCandidates {
     /// Every choice with its name on the command line.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("uniform", Self::Uniform), ("bounds", Self::Bounds), ("sampled", Self::Sampled)];
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("uniform", Self::Uniform),
+        ("bounds", Self::Bounds),
+        ("sampled", Self::Sampled),
+        ("quadratic", Self::Quadratic),
+    ];
 }
 
 /// What of a primitive counts when it is put into the cells of a structure that divides space.
@@ -57,10 +64,11 @@ impl GridCells {
 pub struct BuildOptions {
     /// Ray-triangle method, by name; any member of [`photinus_intersect::METHODS`].
     pub method: String,
-    /// `kd-tree`, `bsp-tree`: cost of visiting a node in the surface-area heuristic. Dimensionless; only the ratio to
-    /// `triangle_cost` matters.
+    /// Cost of visiting a node in the surface-area heuristic. Dimensionless; only the ratio to `triangle_cost` matters.
+    /// It decides in `kd-tree`, `bsp-tree`, `binned-bvh`, `bkd-tree`, `spatial-split-bvh` and `two-level`, and enters the
+    /// cost that the other hierarchies report.
     pub node_cost: f64,
-    /// `kd-tree`, `bsp-tree`: cost of testing a triangle.
+    /// Cost of testing a triangle; used as `node_cost` is.
     pub triangle_cost: f64,
     /// `bsp-tree`: cost of a node whose plane stands across no axis, as a multiple of `node_cost`; 0 to 1000.
     pub oblique_cost: f64,
@@ -72,10 +80,20 @@ pub struct BuildOptions {
     pub density: f64,
     /// `compact-grid`: how cells find their lists.
     pub grid_cells: GridCells,
-    /// `octree`: nodes of more primitives are divided; 1 to 2^20. None: 6.
+    /// Nodes of more primitives are divided, where they can be; 1 to 2^20. None: 6 in `octree`, 16 in `ellipsoid-bvh`,
+    /// `sphere-bvh` and `box-bvh`, 4 in `bih`, as costs say in `binned-bvh`, `bkd-tree`, `spatial-split-bvh` and
+    /// `two-level`.
     pub leaf_size: Option<u32>,
     /// `octree`: levels below the root at most; 0 to 24.
     pub tree_depth: u32,
+    /// `binned-bvh`, `bkd-tree`, `spatial-split-bvh`, `two-level`: bins of an axis; 2 to 64.
+    pub bins: u32,
+    /// `spatial-split-bvh`: spatial splits are tried where the children of the best object split share more than this
+    /// part of the root's surface; 0 to 1 (the paper's alpha).
+    pub split_alpha: f64,
+    /// Most references for each primitive; 1 to 64. None: 4 in `spatial-split-bvh`, 16 in `ellipsoid-bvh`, `sphere-bvh`
+    /// and `box-bvh`.
+    pub reference_limit: Option<f64>,
     /// `kd-tree`: where nodes may be split.
     pub candidates: SplitCandidates,
     /// `kd-tree`: steps per axis for `uniform`; for `sampled`, the number of primitives above which so many bounds
@@ -98,6 +116,9 @@ impl Default for BuildOptions {
             grid_cells: GridCells::default(),
             leaf_size: None,
             tree_depth: 16,
+            bins: 16,
+            split_alpha: 1e-5,
+            reference_limit: None,
             candidates: SplitCandidates::default(),
             candidate_count: 100,
             kernel: Kernel::Auto,

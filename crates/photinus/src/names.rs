@@ -118,10 +118,14 @@ pub const CANDIDATES: Family = Family {
     list: || CANDIDATE_CHOICES.iter().map(|(member, _)| *member).collect(),
 };
 
-const CANDIDATE_CHOICES: [(Member, SplitCandidates); 3] = [
+const CANDIDATE_CHOICES: [(Member, SplitCandidates); 4] = [
     (Member { name: "uniform", summary: "equal steps: fastest to build, dearest tree" }, SplitCandidates::Uniform),
     (Member { name: "bounds", summary: "every primitive's bounds: the reverse" }, SplitCandidates::Bounds),
     (Member { name: "sampled", summary: "bounds, evenly picked where there are many" }, SplitCandidates::Sampled),
+    (
+        Member { name: "quadratic", summary: "lowest points of parabolas through 16 samples" },
+        SplitCandidates::Quadratic,
+    ),
 ];
 
 /// What of a triangle is put into the cells of a structure.

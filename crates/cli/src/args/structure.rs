@@ -8,10 +8,10 @@ use photinus::{BuildOptions, Result, names};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Acceleration structure")]
 pub struct StructureArgs {
-    /// kd-tree, bsp-tree: cost of visiting a node in the surface-area heuristic, relative to --triangle-cost
+    /// Cost of visiting a node in the surface-area heuristic, relative to --triangle-cost
     #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = values::positive)]
     pub node_cost: f64,
-    /// kd-tree, bsp-tree: cost of testing a triangle in the surface-area heuristic
+    /// Cost of testing a triangle in the surface-area heuristic
     #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = values::positive)]
     pub triangle_cost: f64,
     /// kd-tree: where it may be split
@@ -31,13 +31,24 @@ pub struct StructureArgs {
     #[arg(long, value_name = "N", default_value_t = BuildOptions::default().oblique_prims,
         value_parser = value_parser!(u32).range(0..=256))]
     pub oblique_prims: u32,
-    /// octree: nodes of more primitives are divided [default: as suits the structure]
+    /// octree and hierarchies: nodes of more primitives are divided [default: as suits the structure]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1 << 20))]
     pub leaf_size: Option<u32>,
     /// octree: levels below the root at most
     #[arg(long, value_name = "N", default_value_t = BuildOptions::default().tree_depth,
         value_parser = value_parser!(u32).range(0..=24))]
     pub tree_depth: u32,
+    /// binned-bvh, spatial-split-bvh, bkd-tree, two-level: bins of an axis
+    #[arg(long, value_name = "N", default_value_t = BuildOptions::default().bins,
+        value_parser = value_parser!(u32).range(2..=64))]
+    pub bins: u32,
+    /// spatial-split-bvh: part of the root's surface that children may share before space is split, 0 to 1
+    #[arg(long, value_name = "X", default_value_t = BuildOptions::default().split_alpha, value_parser = values::part)]
+    pub split_alpha: f64,
+    /// spatial-split-bvh, ellipsoid-bvh, sphere-bvh, box-bvh: most references for each primitive, 1 to 64 [default: as
+    /// suits the structure]
+    #[arg(long, value_name = "X", value_parser = values::positive)]
+    pub reference_limit: Option<f64>,
     /// uniform-grid, compact-grid: cells for each primitive, at most 1000
     #[arg(long, value_name = "X", default_value_t = BuildOptions::default().density, value_parser = values::positive)]
     pub density: f64,
@@ -60,6 +71,9 @@ impl StructureArgs {
             oblique_prims: self.oblique_prims,
             leaf_size: self.leaf_size,
             tree_depth: self.tree_depth,
+            bins: self.bins,
+            split_alpha: self.split_alpha,
+            reference_limit: self.reference_limit,
             density: self.density,
             grid_cells: names::grid_cells(&self.grid_cells)?,
             ..BuildOptions::default()

@@ -43,6 +43,14 @@ pub fn size(text: &str) -> Result<Size, String> {
     Ok(size)
 }
 
+/// A number from 0 to 1.
+pub fn part(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
+        _ => Err("it must be a number from 0 to 1".into()),
+    }
+}
+
 /// `X,Y,W,H` in pixels.
 pub fn crop(text: &str) -> Result<[u32; 4], String> {
     let window: [u32; 4] = numbers(text).ok_or("write it as X,Y,WIDTH,HEIGHT in pixels, as in 100,50,320,240")?;
