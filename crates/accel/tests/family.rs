@@ -5,8 +5,8 @@ mod common;
 use common::*;
 use photinus_accel::structures::brute_force;
 use photinus_accel::{
-    BuildError, BuildOptions, Clip, DEFAULT_STRUCTURE, GridCells, LeafRange, RayCounters, STRUCTURES, SplitCandidates,
-    Structure, build, find_structure,
+    BuildError, BuildOptions, Clip, DEFAULT_STRUCTURE, GridCells, RayCounters, STRUCTURES, SplitCandidates, Structure,
+    build, find_structure,
 };
 use photinus_geometry::{Hit, Primitives, Ray, Sphere, Vec3};
 use photinus_intersect::METHODS;

@@ -112,7 +112,7 @@ impl Rule {
     }
 
     /// Whether it costs less than the leaf.
-    fn is_cheaper(&self, area_cost: f64, bounds: &Aabb, count: usize) -> bool {
+    pub fn is_cheaper(&self, area_cost: f64, bounds: &Aabb, count: usize) -> bool {
         let area = half_area_f64(size_f64(bounds));
         area > 0.0 && self.cost_ratio + area_cost / area < count as f64
     }

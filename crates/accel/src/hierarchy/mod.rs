@@ -13,3 +13,6 @@ pub(crate) mod shape;
 pub(crate) mod slabs;
 pub(crate) mod volume;
 pub(crate) mod volume_tree;
+
+#[cfg(test)]
+mod tests;

@@ -75,9 +75,14 @@ impl Builder<'_> {
             if let Some(split) = spatial.filter(|s| s.area_cost < object_cost) {
                 let sides = split.divide(self.primitives, refs);
                 let cost = SpatialSplit::cost_of(&sides);
-                let divides = sides.iter().all(|side| !side.is_empty() && side.len() < count);
+                // Where all reach across, only what is gained in space can be worth it.
+                let worth = if sides.iter().all(|side| side.len() < count) {
+                    self.rule.takes(cost, bounds, count)
+                } else {
+                    self.rule.is_cheaper(cost, bounds, count)
+                };
                 let fits = sides[0].len() + sides[1].len() <= budget;
-                if divides && fits && cost < object_cost && self.rule.takes(cost, bounds, count) {
+                if worth && fits && sides.iter().all(|side| !side.is_empty()) && cost < object_cost {
                     return Some((split.axis(), sides));
                 }
             }

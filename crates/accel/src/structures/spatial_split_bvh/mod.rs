@@ -63,3 +63,37 @@ impl Leaves for SpatialSplitBvh {
         self.tree.summary(NAME, self.cost_ratio)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use photinus_geometry::Vec3;
+
+    /// Long thin triangles along a diagonal, side by side: no division of them keeps their boxes apart.
+    fn sheaf(count: u32) -> Primitives {
+        let mut out = Primitives::default();
+        for i in 0..count {
+            let start = Vec3::new(0.0, 0.01 * i as f32, 0.003 * (i % 7) as f32);
+            out.positions.extend([start, start + Vec3::new(5.0, 5.0, 0.1), start + Vec3::new(5.0, 5.004, 0.1)]);
+            out.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+        }
+        out
+    }
+
+    #[test]
+    fn dividing_space_makes_cheaper_trees_of_more_references() {
+        let primitives = sheaf(300);
+        let summary = |alpha: f64, limit: f64| {
+            let options = BuildOptions { split_alpha: alpha, reference_limit: Some(limit), ..BuildOptions::default() };
+            SpatialSplitBvh::new(&primitives, &options).unwrap().summary()
+        };
+        let never = summary(0.0, 1.0);
+        let freely = summary(0.0, 16.0);
+        let some = summary(0.0, 2.0);
+        assert_eq!(never.references, 300);
+        assert!(freely.references > 600 && freely.sah_cost < 0.6 * never.sah_cost, "{freely:?} {never:?}");
+        assert!(some.references <= 600 && some.sah_cost < never.sah_cost, "{some:?}");
+        // Where children may share the whole surface, space is never divided.
+        assert_eq!(summary(1.0, 16.0).references, 300);
+    }
+}

@@ -3,7 +3,7 @@
 
 use crate::bounds::{half_area_f64, size_f64};
 use crate::hierarchy::clip::Clipper;
-use crate::hierarchy::refs::{BuildRef, bounds_of};
+use crate::hierarchy::refs::{BuildRef, PARALLEL_REFS, bounds_of};
 use crate::hierarchy::rule::MAX_BINS;
 use arrayvec::ArrayVec;
 use photinus_geometry::{Aabb, Primitives};
@@ -45,56 +45,73 @@ pub(super) fn best(
     bounds: &Aabb,
     bin_count: usize,
 ) -> Option<SpatialSplit> {
+    let along = |axis: usize| best_along(primitives, refs, bounds, bin_count, axis);
+    let found: [Option<SpatialSplit>; 3] = if refs.len() >= PARALLEL_REFS {
+        let (x, (y, z)) = rayon::join(|| along(0), || rayon::join(|| along(1), || along(2)));
+        [x, y, z]
+    } else {
+        [along(0), along(1), along(2)]
+    };
+    let cheaper = |a: SpatialSplit, b: SpatialSplit| if b.area_cost < a.area_cost { b } else { a };
+    found.into_iter().flatten().reduce(cheaper)
+}
+
+/// The same across one axis.
+fn best_along(
+    primitives: &Primitives,
+    refs: &[BuildRef],
+    bounds: &Aabb,
+    bin_count: usize,
+    axis: usize,
+) -> Option<SpatialSplit> {
     let mut clipper = Clipper::default();
     let mut best: Option<SpatialSplit> = None;
-    for axis in 0..3 {
-        let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
-        let width = (high - low) / bin_count as f64;
-        if !(width > 0.0) {
+    let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
+    let width = (high - low) / bin_count as f64;
+    if !(width > 0.0) {
+        return None;
+    }
+    // Planes by index; those at both ends let everything through.
+    let plane = |i: usize| match i {
+        0 => f64::NEG_INFINITY,
+        i if i == bin_count => f64::INFINITY,
+        i => low + width * i as f64,
+    };
+    let bin_of = |x: f32| (((f64::from(x) - low) / width) as usize).min(bin_count - 1);
+    let empty = Bin { bounds: Aabb::EMPTY, begins: 0, ends: 0 };
+    let mut bins: ArrayVec<Bin, MAX_BINS> = std::iter::repeat_n(empty, bin_count).collect();
+    for r in refs {
+        let (first, last) = (bin_of(r.bounds.min[axis]), bin_of(r.bounds.max[axis]));
+        bins[first].begins += 1;
+        bins[last].ends += 1;
+        if first == last {
+            bins[first].bounds = bins[first].bounds.union(r.bounds);
             continue;
         }
-        // Planes by index; those at both ends let everything through.
-        let plane = |i: usize| match i {
-            0 => f64::NEG_INFINITY,
-            i if i == bin_count => f64::INFINITY,
-            i => low + width * i as f64,
-        };
-        let bin_of = |x: f32| (((f64::from(x) - low) / width) as usize).min(bin_count - 1);
-        let empty = Bin { bounds: Aabb::EMPTY, begins: 0, ends: 0 };
-        let mut bins: ArrayVec<Bin, MAX_BINS> = std::iter::repeat_n(empty, bin_count).collect();
-        for r in refs {
-            let (first, last) = (bin_of(r.bounds.min[axis]), bin_of(r.bounds.max[axis]));
-            bins[first].begins += 1;
-            bins[last].ends += 1;
-            if first == last {
-                bins[first].bounds = bins[first].bounds.union(r.bounds);
-                continue;
-            }
-            for i in first..=last {
-                let slab = [plane(i), plane(i + 1)];
-                if let Some(part) = clipper.slab(primitives, r.id as usize, &r.bounds, axis, slab) {
-                    bins[i].bounds = bins[i].bounds.union(part);
-                }
+        for i in first..=last {
+            let slab = [plane(i), plane(i + 1)];
+            if let Some(part) = clipper.slab(primitives, r.id as usize, &r.bounds, axis, slab) {
+                bins[i].bounds = bins[i].bounds.union(part);
             }
         }
-        let mut above: ArrayVec<Side, MAX_BINS> = ArrayVec::new();
-        let mut side = Side { bounds: Aabb::EMPTY, count: 0 };
-        for bin in bins.iter().rev() {
-            side = Side { bounds: side.bounds.union(bin.bounds), count: side.count + bin.ends };
-            above.push(side);
+    }
+    let mut above: ArrayVec<Side, MAX_BINS> = ArrayVec::new();
+    let mut side = Side { bounds: Aabb::EMPTY, count: 0 };
+    for bin in bins.iter().rev() {
+        side = Side { bounds: side.bounds.union(bin.bounds), count: side.count + bin.ends };
+        above.push(side);
+    }
+    let mut below = Side { bounds: Aabb::EMPTY, count: 0 };
+    for border in 1..bin_count {
+        let bin = &bins[border - 1];
+        below = Side { bounds: below.bounds.union(bin.bounds), count: below.count + bin.begins };
+        let above = above[bin_count - 1 - border];
+        if below.count == 0 || above.count == 0 {
+            continue;
         }
-        let mut below = Side { bounds: Aabb::EMPTY, count: 0 };
-        for border in 1..bin_count {
-            let bin = &bins[border - 1];
-            below = Side { bounds: below.bounds.union(bin.bounds), count: below.count + bin.begins };
-            let above = above[bin_count - 1 - border];
-            if below.count == 0 || above.count == 0 {
-                continue;
-            }
-            let area_cost = area(&below.bounds) * below.count as f64 + area(&above.bounds) * above.count as f64;
-            if best.is_none_or(|b| area_cost < b.area_cost) {
-                best = Some(SpatialSplit { area_cost, axis, position: plane(border), sides: [below, above] });
-            }
+        let area_cost = area(&below.bounds) * below.count as f64 + area(&above.bounds) * above.count as f64;
+        if best.is_none_or(|b| area_cost < b.area_cost) {
+            best = Some(SpatialSplit { area_cost, axis, position: plane(border), sides: [below, above] });
         }
     }
     best
