@@ -37,3 +37,8 @@ pub mod structures {
 pub use list::{DEFAULT_STRUCTURE, STRUCTURES, StructureInfo, build, find_structure};
 pub use options::{BuildError, BuildOptions, Clip, GridCells, Kernel, SplitCandidates};
 pub use structure::{LeafRange, RayCounters, RefitError, Structure, StructureSummary};
+
+/// The page's example is compiled as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/structures/instances.md")]
+struct InstancesPage;
