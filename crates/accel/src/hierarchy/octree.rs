@@ -7,6 +7,7 @@
 
 use super::clip::{Cell, Clipper};
 use super::refs::{BuildRef, Built, BuiltKind, PARALLEL_REFS, bounds_of, gather};
+use super::rule::reference_budget;
 use super::volume::Fit;
 use photinus_geometry::Primitives;
 use rayon::prelude::*;
@@ -35,7 +36,7 @@ pub(crate) fn build<V: Fit>(primitives: &Primitives, leaf_size: usize, limit: f6
     let division = Division { primitives, leaf_size };
     let ids: Vec<u32> = refs.iter().map(|r| r.id).collect();
     let root = division.voxel(&ids, Cell::of(&bounds_of(&refs)))?;
-    let budget = (ids.len() as f64 * limit) as usize;
+    let budget = reference_budget(ids.len(), limit);
     Some(division.node(root, 0, budget))
 }
 

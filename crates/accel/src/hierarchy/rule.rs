@@ -39,6 +39,11 @@ pub(crate) fn split_alpha(options: &BuildOptions) -> Result<f64, BuildError> {
     Ok(alpha)
 }
 
+/// Most references of a structure over `count` primitives, at so many for each: places fit into words.
+pub(crate) fn reference_budget(count: usize, limit: f64) -> usize {
+    ((count as f64 * limit) as usize).min(1 << 30).max(count)
+}
+
 /// Most references for each primitive: those of the options, or of the member.
 pub(crate) fn reference_limit(options: &BuildOptions, own: f64) -> Result<f64, BuildError> {
     let limit = options.reference_limit.unwrap_or(own);

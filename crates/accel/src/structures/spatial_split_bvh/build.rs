@@ -5,7 +5,7 @@ use crate::bounds::{half_area_f64, size_f64};
 use crate::hierarchy::binned::Binning;
 use crate::hierarchy::object_build::MAX_HEURISTIC_DEPTH;
 use crate::hierarchy::refs::{BuildRef, Built, BuiltKind, PARALLEL_REFS, bounds_of, gather};
-use crate::hierarchy::rule::Rule;
+use crate::hierarchy::rule::{Rule, reference_budget};
 use photinus_geometry::{Aabb, Primitives};
 
 /// Leaves hold so many references below the depth to which the heuristic is asked.
@@ -25,7 +25,7 @@ pub(super) fn build(primitives: &Primitives, rule: Rule, alpha: f64, limit: f64)
         return None;
     }
     let overlap = alpha * half_area_f64(size_f64(&bounds_of(&refs)));
-    let budget = (refs.len() as f64 * limit) as usize;
+    let budget = reference_budget(refs.len(), limit);
     Some(Builder { primitives, rule, overlap }.node(refs, 0, budget))
 }
 
