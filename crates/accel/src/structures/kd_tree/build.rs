@@ -265,10 +265,10 @@ impl Builder<'_> {
                         }
                     }
                 }
-                SplitCandidates::Quadratic => {
+                SplitCandidates::Quadratic if count > quadratic::FEW => {
                     quadratic::candidates([low, high], [u, v], |p| [below(p), above(p)], consider);
                 }
-                SplitCandidates::Bounds | SplitCandidates::Sampled => sweep(lows, highs, consider),
+                _ => sweep(lows, highs, consider),
             }
         }
         (best.cost < count as f64).then_some(best)

@@ -8,6 +8,8 @@
 
 use arrayvec::ArrayVec;
 
+/// In nodes of so many primitives every bound is as quickly counted.
+pub const FEW: usize = 64;
 /// Samples of each of both steps, as in the paper.
 const SAMPLES: usize = 8;
 /// Samples of both steps, and the ends of the cell.
