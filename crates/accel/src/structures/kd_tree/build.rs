@@ -268,7 +268,9 @@ impl Builder<'_> {
                 SplitCandidates::Quadratic if count > quadratic::FEW => {
                     quadratic::candidates([low, high], [u, v], |p| [below(p), above(p)], consider);
                 }
-                _ => sweep(lows, highs, consider),
+                SplitCandidates::Bounds | SplitCandidates::Sampled | SplitCandidates::Quadratic => {
+                    sweep(lows, highs, consider);
+                }
             }
         }
         (best.cost < count as f64).then_some(best)
