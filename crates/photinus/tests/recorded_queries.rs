@@ -6,7 +6,7 @@ use photinus::profile::queries::{
     Block, BlockKey, MapKind, NO_PARENT, QueryFile, RayAnswer, RayKind, RayRecord, SearchAnswer, SearchKernel, Stage,
 };
 use photinus::render::{Mode, RenderOptions, Session, Settings, Silent, Stats, Stop};
-use photinus_accel::{BuildOptions, STRUCTURES};
+use photinus_accel::{BuildOptions, RayCounters, STRUCTURES};
 use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_render::Compiled;
 use photinus_scene::{ColorInput, FloatInput, Geometry, Material, MaterialId, MicrofacetModel, NamedMaterial, Scene};
@@ -94,8 +94,12 @@ fn every_structure_gives_the_recorded_hits() {
         assert_eq!(rays.len() as u64, stats.rays.total, "{scene}, {mode:?}: every ray is there");
         for info in STRUCTURES {
             let structure = photinus_accel::build(info.name, primitives.clone(), &BuildOptions::default()).unwrap();
-            // Brute force takes its time over 55 thousand triangles: every so manieth ray will do for it.
-            let step = if info.name == "brute-force" { 1 + rays.len() * primitives.len() / 100_000_000 } else { 1 };
+            // Where a ray takes many tests, as by brute force over 55 thousand triangles, every so manieth ray will do.
+            let first: Vec<Ray> = rays.iter().take(500).map(|record| ray(record)).collect();
+            let mut counters = RayCounters::default();
+            structure.closest_hit_counted(&first, &mut vec![Hit::MISS; first.len()], &mut counters);
+            let tests = counters.intersect.tests as usize / first.len().max(1);
+            let step = 1 + rays.len() * tests / 100_000_000;
             let mut replayed = 0;
             for record in rays.iter().step_by(step) {
                 replayed += 1;
