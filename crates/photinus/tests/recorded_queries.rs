@@ -99,7 +99,7 @@ fn every_structure_gives_the_recorded_hits() {
             let mut counters = RayCounters::default();
             structure.closest_hit_counted(&first, &mut vec![Hit::MISS; first.len()], &mut counters);
             let tests = counters.intersect.tests as usize / first.len().max(1);
-            let step = 1 + rays.len() * tests / 100_000_000;
+            let step = 1 + rays.len() * tests / 20_000_000;
             let mut replayed = 0;
             for record in rays.iter().step_by(step) {
                 replayed += 1;
