@@ -13,6 +13,7 @@ mod laboratory;
 pub mod list;
 pub mod options;
 mod planes;
+mod reach;
 mod structure;
 pub mod structures {
     //! The members: one acceleration structure a file or folder.
