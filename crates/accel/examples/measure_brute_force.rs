@@ -1,5 +1,5 @@
 //! Ray-triangle tests a second of `brute-force`, by scene and kernel, on one thread by its processor time:
-//! `cargo run --release -p photinus-accel --example measure_brute_force -- [--rounds N] [--rays N]`.
+//! `cargo run --release -p photinus-accel --example measure_brute_force -- [--rounds N] [--rays N] [--only WORDS]`.
 //!
 //! As many triangles as room-1 has lie in a cube at random, small ones or ones so large that most blocks pass the sieve. Rays run through random points of the bounds in random directions; those that ask for any
 //! hit start beyond the bounds and run away, so that no test is spared.
@@ -63,9 +63,14 @@ fn speed(tests: f64, rounds: usize, mut run: impl FnMut()) -> f64 {
     speeds[rounds / 2]
 }
 
-fn measure(name: &str, primitives: &Arc<Primitives>, rounds: usize, count: u32) -> Result<(), Box<dyn Error>> {
+fn measure(name: &str, primitives: &Arc<Primitives>, settings: &Settings) -> Result<(), Box<dyn Error>> {
+    let Settings { rounds, count, only } = settings;
+    let (rounds, count) = (*rounds, *count);
     let (nearest, away) = (rays(primitives, count, false), rays(primitives, count, true));
     for (kernel, label) in [(Kernel::Scalar, "plain"), (Kernel::Avx2, "AVX2"), (Kernel::Avx512, "AVX-512")] {
+        if !format!("{name}, {label}").contains(only.as_str()) {
+            continue;
+        }
         let structure: Box<dyn Structure> =
             build("brute-force", Arc::clone(primitives), &BuildOptions { kernel, ..BuildOptions::default() })?;
         let take = if kernel == Kernel::Scalar { nearest.len().div_ceil(PLAIN_SHARE) } else { nearest.len() };
@@ -81,19 +86,30 @@ fn measure(name: &str, primitives: &Arc<Primitives>, rounds: usize, count: u32) 
     Ok(())
 }
 
+/// How much is measured.
+struct Settings {
+    rounds: usize,
+    count: u32,
+    /// Part of the names of what is.
+    only: String,
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let (mut rounds, mut count) = (5, 4096);
+    let mut settings = Settings { rounds: 5, count: 4096, only: String::new() };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
-        let mut number = || words.next().ok_or(format!("{word} needs a number"));
+        let value = words.next().ok_or(format!("{word} needs a value"))?;
         match word.as_str() {
-            "--rounds" => rounds = number()?.parse()?,
-            "--rays" => count = number()?.parse()?,
+            "--rounds" => settings.rounds = value.parse()?,
+            "--rays" => settings.count = value.parse()?,
+            "--only" => settings.only = value,
             _ => return Err(format!("unknown: {word}").into()),
         }
     }
     println!("| scene | kernel | closest hit, G tests/s | any hit, G tests/s | rays that hit, per cent |");
     println!("|---|---|---|---|---|");
-    measure("small triangles", &Arc::new(soup(0.03)), rounds, count)?;
-    measure("large triangles", &Arc::new(soup(0.25)), rounds, count)
+    for (name, size) in [("small triangles", 0.03), ("large triangles", 0.25), ("huge triangles", 1.0)] {
+        measure(name, &Arc::new(soup(size)), &settings)?;
+    }
+    Ok(())
 }

@@ -7,7 +7,8 @@ use photinus_intersect::is_degenerate;
 /// Triangles of a block: words in the widest register.
 pub const LANES: usize = 16;
 
-/// Blocks that all rays of a batch are taken past before the next: 24 KiB of boxes, half of the nearest cache.
+/// Blocks that all rays of a batch are taken past before the next: 24 KiB of boxes, half of the nearest cache,
+/// and a word of flags.
 pub const CHUNK: usize = 64;
 
 /// Lengths beyond this, from the middle, leave no room for sums of products: such triangles and rays pass the sieve.

@@ -117,13 +117,13 @@ impl Blocked {
         let first = chunk * CHUNK;
         let last = self.blocks.boxes.len().min(first + CHUNK);
         let (boxes, vertices) = (&self.blocks.boxes[first..last], &self.blocks.vertices[first..last]);
-        let mut passed = [0; CHUNK];
         for place in 0..under_way.len() {
             let traced = &under_way[place];
-            let count = kernel.sift(&traced.sieve, boxes, &mut passed);
+            let mut passed = kernel.sift(&traced.sieve, boxes);
             let reach = Reach::new(traced.woop.dir_z, traced.t_min, traced.t_max);
-            for &block in &passed[..count] {
-                let block = usize::from(block);
+            while passed != 0 {
+                let block = passed.trailing_zeros() as usize;
+                passed &= passed - 1;
                 let mut mask = kernel.filter(&traced.woop, &reach, &vertices[block]);
                 while mask != 0 {
                     let id = ((first + block) * LANES) as u32 + mask.trailing_zeros();

@@ -54,14 +54,15 @@ fn trace<const ANY: bool>(
 
 impl Kernel for Avx2 {
     #[inline(always)]
-    fn sift(self, sieve: &Sieve, boxes: &[Boxes], passed: &mut [u8; CHUNK]) -> usize {
-        let mut count = 0;
-        // SAFETY: `self` proves that the machine has AVX2; the loads are of eight words each, from places that are at most
-        // 5 x 16 + 8 in a block of 6 x 16, and `side` at most 4 x 16 + 8.
+    fn sift(self, sieve: &Sieve, boxes: &[Boxes]) -> u64 {
+        // Of each block the lanes that are out in both halves: all bits where none passes.
+        let mut lanes = [u8::MAX; CHUNK];
+        // SAFETY: `self` proves that the machine has AVX2; the loads from boxes are of eight words each, from places that are
+        // at most 5 x 16 + 8 in a block of 6 x 16, `side` at most 4 x 16 + 8, and those from `lanes` of 32 of 64.
         unsafe {
             let spread = |x: [f32; 2]| x.map(|x| _mm256_set1_ps(x));
             let (shear, most, least) = (spread(sieve.shear), spread(sieve.most), spread(sieve.least));
-            for (index, block) in boxes.iter().enumerate() {
+            for (block, lanes) in boxes.iter().zip(&mut lanes) {
                 let out = |half: usize| {
                     let load = |place: usize| _mm256_load_ps(block.bounds.as_ptr().cast::<f32>().add(place + half));
                     let sheared = |place: usize, with: usize, i: usize| {
@@ -75,12 +76,15 @@ impl Kernel for Avx2 {
                     };
                     _mm256_or_ps(side(0), side(1))
                 };
-                let all_out = _mm256_movemask_ps(_mm256_and_ps(out(0), out(HALF))) == 0xFF;
-                passed[count % CHUNK] = index as u8;
-                count += usize::from(!all_out);
+                *lanes = _mm256_movemask_ps(_mm256_and_ps(out(0), out(HALF))) as u8;
             }
+            let half = |first: usize| {
+                let lanes = _mm256_loadu_si256(lanes.as_ptr().add(first).cast());
+                let all_out = _mm256_movemask_epi8(_mm256_cmpeq_epi8(lanes, _mm256_set1_epi8(-1)));
+                u64::from(!all_out as u32)
+            };
+            half(0) | half(CHUNK / 2) << (CHUNK / 2)
         }
-        count
     }
 
     #[inline(always)]

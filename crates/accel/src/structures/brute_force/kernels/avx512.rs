@@ -18,6 +18,7 @@ impl Avx512 {
     /// The kernel, where the machine can run it.
     pub fn detect() -> Option<Self> {
         let has = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
             && is_x86_feature_detected!("avx512vl")
             && is_x86_feature_detected!("avx512dq")
             && is_x86_feature_detected!("bmi1")
@@ -40,7 +41,7 @@ impl Avx512 {
     }
 }
 
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,bmi1,bmi2,popcnt,lzcnt")]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512dq,bmi1,bmi2,popcnt,lzcnt")]
 fn trace<const ANY: bool>(
     kernel: Avx512,
     blocked: &Blocked,
@@ -53,14 +54,15 @@ fn trace<const ANY: bool>(
 
 impl Kernel for Avx512 {
     #[inline(always)]
-    fn sift(self, sieve: &Sieve, boxes: &[Boxes], passed: &mut [u8; CHUNK]) -> usize {
-        let mut count = 0;
-        // SAFETY: `self` proves that the machine has AVX-512F; the loads are of sixteen words each, from places that are
-        // at most 5 x 16 in a block of 6 x 16, and `side` at most 4 x 16.
+    fn sift(self, sieve: &Sieve, boxes: &[Boxes]) -> u64 {
+        // Which lanes of each block pass: stored as they are, which takes no port that computes.
+        let mut lanes = [0u16; CHUNK];
+        // SAFETY: `self` proves that the machine has AVX-512F and BW; the loads from boxes are of sixteen words each, from
+        // places that are at most 5 x 16 in a block of 6 x 16, `side` at most 4 x 16, and those from `lanes` of 32 of 64.
         unsafe {
             let spread = |x: [f32; 2]| x.map(|x| _mm512_set1_ps(x));
             let (shear, most, least) = (spread(sieve.shear), spread(sieve.most), spread(sieve.least));
-            for (index, block) in boxes.iter().enumerate() {
+            for (block, lanes) in boxes.iter().zip(&mut lanes) {
                 let load = |place: usize| _mm512_load_ps(block.bounds.as_ptr().cast::<f32>().add(place));
                 let lower =
                     |i: usize| _mm512_sub_ps(load(sieve.side[i]), _mm512_mul_ps(shear[i], load(sieve.with_lower[i])));
@@ -71,12 +73,14 @@ impl Kernel for Avx512 {
                 let mask = _mm512_cmp_ps_mask::<_CMP_NGT_UQ>(lower(0), most[0]);
                 let mask = _mm512_mask_cmp_ps_mask::<_CMP_NLT_UQ>(mask, upper(0), least[0]);
                 let mask = _mm512_mask_cmp_ps_mask::<_CMP_NGT_UQ>(mask, lower(1), most[1]);
-                let mask = _mm512_mask_cmp_ps_mask::<_CMP_NLT_UQ>(mask, upper(1), least[1]);
-                passed[count % CHUNK] = index as u8;
-                count += usize::from(mask != 0);
+                *lanes = _mm512_mask_cmp_ps_mask::<_CMP_NLT_UQ>(mask, upper(1), least[1]);
             }
+            let half = |first: usize| {
+                let lanes = _mm512_loadu_si512(lanes.as_ptr().add(first).cast());
+                u64::from(_mm512_test_epi16_mask(lanes, lanes))
+            };
+            half(0) | half(CHUNK / 2) << (CHUNK / 2)
         }
-        count
     }
 
     #[inline(always)]

@@ -9,16 +9,17 @@ pub mod avx2;
 pub mod avx512;
 pub mod scalar;
 
-use super::layout::{Boxes, CHUNK, Vertices};
+#[cfg(doc)]
+use super::layout::CHUNK;
+use super::layout::{Boxes, Vertices};
 use super::sieve::Sieve;
 use crate::reach::Reach;
 use photinus_intersect::methods::woop::Started;
 
 /// A kernel: the steps of one instruction set. Having one proves that the machine can run it.
 pub trait Kernel: Copy {
-    /// Writes the indices of those of `boxes`, [`CHUNK`] at most, of which any passes the sieve to the front of `passed`,
-    /// in order, and returns how many they are.
-    fn sift(self, sieve: &Sieve, boxes: &[Boxes], passed: &mut [u8; CHUNK]) -> usize;
+    /// Those of `boxes`, [`CHUNK`] at most, of which any passes the sieve, as a mask of their indices.
+    fn sift(self, sieve: &Sieve, boxes: &[Boxes]) -> u64;
 
     /// Triangles that the ray may hit within its reach, as a mask of lanes: `woop`'s own filter.
     fn filter(self, ray: &Started<f32>, reach: &Reach, block: &Vertices) -> u16;

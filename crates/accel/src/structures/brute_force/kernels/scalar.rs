@@ -24,8 +24,8 @@ fn min(a: f32, b: f32) -> f32 {
 
 impl Kernel for Scalar {
     #[inline(always)]
-    fn sift(self, sieve: &Sieve, boxes: &[Boxes], passed: &mut [u8; CHUNK]) -> usize {
-        let mut count = 0;
+    fn sift(self, sieve: &Sieve, boxes: &[Boxes]) -> u64 {
+        let mut passed = 0;
         for (index, block) in boxes.iter().enumerate() {
             let mut out = [false; LANES];
             for axis in 0..2 {
@@ -38,10 +38,9 @@ impl Kernel for Scalar {
                     out[lane] |= upper[lane] - shear * with_upper[lane] < least;
                 }
             }
-            passed[count % CHUNK] = index as u8;
-            count += usize::from(!out.iter().fold(true, |all, out| all & out));
+            passed |= u64::from(!out.iter().fold(true, |all, out| all & out)) << (index % CHUNK);
         }
-        count
+        passed
     }
 
     #[inline(always)]
