@@ -1,8 +1,9 @@
 //! Ray-triangle tests a second of `brute-force`, by scene and kernel, on one thread by its processor time:
 //! `cargo run --release -p photinus-accel --example measure_brute_force -- [--rounds N] [--rays N] [--only WORDS]`.
 //!
-//! As many triangles as room-1 has lie in a cube at random, small ones or ones so large that most blocks pass the sieve. Rays run through random points of the bounds in random directions; those that ask for any
-//! hit start beyond the bounds and run away, so that no test is spared.
+//! As many triangles as room-1 has lie in a cube at random: small ones, larger ones of which a good part of the blocks
+//! pass the sieve, and ones of which most do. Rays run through random points of the bounds in random directions; those that
+//! ask for any hit start beyond the bounds and run away, so that no test is spared.
 
 #![expect(clippy::print_stdout, reason = "an example talks to its reader")]
 
@@ -100,7 +101,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     while let Some(word) = words.next() {
         let value = words.next().ok_or(format!("{word} needs a value"))?;
         match word.as_str() {
-            "--rounds" => settings.rounds = value.parse()?,
+            "--rounds" => settings.rounds = value.parse::<usize>()?.max(1),
             "--rays" => settings.count = value.parse()?,
             "--only" => settings.only = value,
             _ => return Err(format!("unknown: {word}").into()),

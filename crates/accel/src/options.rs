@@ -99,7 +99,7 @@ pub struct BuildOptions {
     /// `kd-tree`: steps per axis for `uniform`; for `sampled`, the number of primitives above which so many bounds
     /// are picked on each axis (the thesis's x).
     pub candidate_count: u32,
-    /// `wide-bvh`: the instruction set of its kernel. All give the same bits.
+    /// `wide-bvh` and, with `woop`, `brute-force`: the instruction set of the kernel. All give the same bits.
     pub kernel: Kernel,
 }
 
@@ -149,17 +149,17 @@ pub(crate) fn check(
     if good { Ok(()) } else { Err(BuildError::BadOption { option, value: value.to_string(), expected }) }
 }
 
-/// Instruction set of the wide tree's kernel.
+/// Instruction set of a kernel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kernel {
     /// The widest that this machine has.
     #[default]
     Auto,
-    /// Plain Rust.
+    /// Plain Rust; of `brute-force` the plain way, one primitive after the other.
     Scalar,
-    /// AVX2; `Scalar` where the machine lacks it.
+    /// AVX2; plain Rust where the machine lacks it.
     Avx2,
-    /// AVX-512 (F, VL, DQ); the next best where the machine lacks it.
+    /// AVX-512 (F, VL, DQ, of `brute-force` BW too); the next best where the machine lacks it.
     Avx512,
 }
 

@@ -19,6 +19,10 @@ const GRID_TWIN_TEST: (&str, &str) =
 const WIDE_TWIN_TEST: (&str, &str) =
     ("crates/accel/src/structures/wide_bvh/tests.rs", "all_kernels_give_the_same_bits_and_the_same_work");
 
+/// So do those of brute force.
+const BRUTE_TWIN_TEST: (&str, &str) =
+    ("crates/accel/src/structures/brute_force/tests.rs", "all_kernels_give_the_same_bits_and_the_same_work");
+
 /// What another's library reads and writes lies where its headers say.
 const EMBREE_TEST: (&str, &str) = ("benches/peers/rays/src/engines/embree.rs", "records_lie_as_in_the_headers");
 
@@ -32,6 +36,8 @@ const KERNELS: &[Kernel] = &[
     Kernel { path: "crates/photons/src/searches/grid/avx512.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/shared/avx2.rs", twin_test: GRID_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/shared/avx512.rs", twin_test: GRID_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/brute_force/kernels/avx2.rs", twin_test: BRUTE_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/brute_force/kernels/avx512.rs", twin_test: BRUTE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx2.rs", twin_test: WIDE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx512.rs", twin_test: WIDE_TWIN_TEST },
     Kernel {
