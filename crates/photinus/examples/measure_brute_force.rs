@@ -1,14 +1,15 @@
 //! Ray-triangle tests a second of `brute-force`, by scene and kernel, on one thread by its processor time:
-//! `cargo run --release -p photinus-accel --example measure_brute_force -- [--rounds N] [--rays N] [--only WORDS]`.
+//! `cargo run --release -p photinus --example measure_brute_force -- [--rounds N] [--rays N] [--only WORDS]`.
 //!
-//! As many triangles as room-1 has lie in a cube at random: small ones, larger ones of which a good part of the blocks
+//! Scenes are two built-in rooms, and as many triangles as the first has, at random in a cube: small ones, larger ones of which a good part of the blocks
 //! pass the sieve, and ones of which most do. Rays run through random points of the bounds in random directions; those that
 //! ask for any hit start beyond the bounds and run away, so that no test is spared.
 
 #![expect(clippy::print_stdout, reason = "an example talks to its reader")]
 
+use photinus::geometry::{Hit, Primitives, Ray, Vec3};
+use photinus::{LoadOptions, TreeOptions};
 use photinus_accel::{BuildOptions, Kernel, Structure, build};
-use photinus_geometry::{Hit, Primitives, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_profile::thread_nanoseconds;
 use std::error::Error;
@@ -109,6 +110,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("| scene | kernel | closest hit, G tests/s | any hit, G tests/s | rays that hit, per cent |");
     println!("|---|---|---|---|---|");
+    for name in ["room-1", "room-4"] {
+        let room = photinus::build_tree(photinus::open(name, &LoadOptions::default())?, &TreeOptions::default())?;
+        measure(name, &room.primitives, &settings)?;
+    }
     for (name, size) in [("small triangles", 0.03), ("large triangles", 0.25), ("huge triangles", 1.0)] {
         measure(name, &Arc::new(soup(size)), &settings)?;
     }
