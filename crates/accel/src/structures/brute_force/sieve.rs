@@ -47,7 +47,8 @@ impl Sieve {
     /// The sieve of a ray among triangles around `middle`.
     pub fn new(ray: &Started<f32>, middle: &[f64; 3]) -> Self {
         let start = |axis: usize| f64::from(ray.origin[axis]) - middle[axis];
-        let [kx, ky, kz] = ray.axes;
+        // Below three always; kernels read memory by them.
+        let [kx, ky, kz] = ray.axes.map(|k| k % 3);
         let mut out = Self {
             side: [2 * kx * LANES, 2 * ky * LANES],
             with_lower: [0; 2],

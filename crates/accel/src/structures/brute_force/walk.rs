@@ -183,7 +183,8 @@ impl Blocked {
         counters.intersect.hits += u64::from(work.hits);
         counters.intersect.tests -= self.sphere_ids.len() as u64 - u64::from(work.tests);
         if any {
-            best.prim = 0;
+            // Which one was hit is not asked for.
+            best.prim = self.sphere_ids[0];
         }
     }
 }
