@@ -42,11 +42,11 @@ pub struct Measured {
 }
 
 /// Builds the program. Others' code is compiled for this machine, as their users would; ours chooses its instructions
-/// while it runs either way.
+/// while it runs either way. The lock pins the others; what our crates come to need is added to it.
 pub fn build(root: &Path, folder: &Path) -> Result<PathBuf, Failure> {
     let target = folder.join("build");
     let output = Command::new(tools::cargo())
-        .args(["build", "--release", "--locked", "--quiet", "--manifest-path"])
+        .args(["build", "--release", "--quiet", "--manifest-path"])
         .arg(root.join(FOLDER).join("Cargo.toml"))
         .arg("--target-dir")
         .arg(&target)
