@@ -13,6 +13,7 @@ use photinus_accel::{BuildOptions, Kernel, Structure, build};
 use photinus_num::{Sampler, StreamKind};
 use photinus_profile::thread_nanoseconds;
 use std::error::Error;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Seed of triangles and rays.
@@ -100,6 +101,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut settings = Settings { rounds: 5, count: 4096, only: String::new() };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
+        // A folder to write into, which every example may be given: a small run that writes nothing.
+        if Path::new(&word).is_dir() {
+            settings = Settings { rounds: 1, count: 16, ..settings };
+            continue;
+        }
         let value = words.next().ok_or(format!("{word} needs a value"))?;
         match word.as_str() {
             "--rounds" => settings.rounds = value.parse::<usize>()?.max(1),

@@ -12,6 +12,7 @@ use photinus::{LoadOptions, TreeOptions};
 use photinus_accel::{BuildOptions, RayCounters, RefitError, STRUCTURES, Structure, build};
 use photinus_num::{Sampler, StreamKind};
 use std::error::Error;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -53,7 +54,9 @@ fn least(mut secs: impl FnMut() -> Result<f64, Box<dyn Error>>) -> Result<f64, B
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let name = std::env::args().nth(1).unwrap_or_else(|| "texture-1210".into());
+    // A folder to write into, which every example may be given, is no scene: nothing is written.
+    let mut words = std::env::args().skip(1).filter(|word| !Path::new(word).is_dir());
+    let name = words.next().unwrap_or_else(|| "texture-1210".into());
     let scene = photinus::open(&name, &LoadOptions::default())?;
     let primitives = photinus::build_tree(scene, &TreeOptions::default())?.primitives;
     // Rays where most vertices are: some scenes stand on a plain that is far larger.

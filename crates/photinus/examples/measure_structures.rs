@@ -14,6 +14,7 @@ use photinus_num::{Sampler, StreamKind};
 use photinus_profile::thread_nanoseconds;
 use photinus_render::CameraModel;
 use std::error::Error;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Bounces before the deep rays.
@@ -163,7 +164,8 @@ fn measure(scene_name: &str, rounds: u32, only: &[String]) -> Result<(), Box<dyn
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (mut rounds, mut only, mut scenes) = (1, Vec::new(), Vec::new());
-    let mut words = std::env::args().skip(1);
+    // A folder to write into, which every example may be given, is no scene: nothing is written.
+    let mut words = std::env::args().skip(1).filter(|word| !Path::new(word).is_dir());
     while let Some(word) = words.next() {
         match word.as_str() {
             "--rounds" => rounds = words.next().ok_or("--rounds needs a number")?.parse()?,

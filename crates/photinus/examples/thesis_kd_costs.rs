@@ -10,6 +10,7 @@ use photinus::render::{Mode, RenderOptions, Session, Settings, Stop};
 use photinus::{BuildOptions, LoadOptions, TreeOptions};
 use photinus_render::Silent;
 use std::error::Error;
+use std::path::Path;
 
 /// C. A. Hoggins, *Hardware Acceleration of Photon Mapping*, Newcastle University, 2010, tables 3 and 4: by row the
 /// table, node cost, triangle cost, depth, seconds of tests, seconds of traversal, tests a ray.
@@ -35,7 +36,8 @@ const PRINTED: [(u32, f64, f64, u32, f64, f64, f64); 18] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut words = std::env::args().skip(1);
+    // A folder to write into, which every example may be given, is no scene: nothing is written.
+    let mut words = std::env::args().skip(1).filter(|word| !Path::new(word).is_dir());
     let scene_name = words.next().unwrap_or_else(|| "texture-1210".to_owned());
     let size = words.next().unwrap_or_else(|| "80x60".to_owned());
     let (width, height) = size.split_once('x').ok_or("write the size as WIDTHxHEIGHT")?;
