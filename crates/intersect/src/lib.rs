@@ -4,6 +4,7 @@
 //! A method is a pair of a prepared triangle and a started ray ([`RtiMethod`]). Structures know none of them: they
 //! hold a [`LeafTester`], made from the list ([`METHODS`]) by name, and call it once a leaf.
 
+pub mod doubles;
 pub mod leaf_tester;
 pub mod list;
 pub mod method;

@@ -4,6 +4,7 @@ mod common;
 
 use common::*;
 use photinus_geometry::{Hit, Primitives, Ray, Vec3};
+use photinus_intersect::doubles::Lanes;
 use photinus_intersect::methods::angle_summation::tolerance;
 use photinus_intersect::methods::woop::{Woop, finish, finish_lanes};
 use photinus_intersect::{DEFAULT_METHOD, METHODS, MethodInfo, find_method, is_degenerate};
@@ -309,17 +310,20 @@ fn woop_finishes_lanes_as_it_finishes_one() {
         let mut draw = || values[(sampler.next_1d() * common as f32) as usize];
         let sheared: [[[f64; 4]; 3]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| [0; 4].map(|_| draw())));
         let dir_z = [0; 4].map(|_| draw());
-        let found = finish_lanes(&sheared, &dir_z);
+        let found = finish_lanes(&sheared.map(|v| v.map(Lanes)), Lanes(dir_z));
         for lane in 0..4 {
             match finish(&sheared.map(|v| v.map(|axis| axis[lane])), dir_z[lane]) {
                 Some(hit) => {
                     let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
-                    assert!(same(hit.t, found.t[lane]) && same(hit.alpha, found.alpha[lane]), "{sheared:?} {dir_z:?}");
-                    assert!(same(hit.beta, found.beta[lane]));
+                    assert!(
+                        same(hit.t, found.t.0[lane]) && same(hit.alpha, found.alpha.0[lane]),
+                        "{sheared:?} {dir_z:?}"
+                    );
+                    assert!(same(hit.beta, found.beta.0[lane]) && found.hits >> lane & 1 == 1);
                     hits += 1;
                 }
                 None => {
-                    assert!(found.t[lane].is_nan(), "{sheared:?} {dir_z:?}");
+                    assert!(found.hits >> lane & 1 == 0, "{sheared:?} {dir_z:?}");
                     misses += 1;
                 }
             }

@@ -8,6 +8,7 @@
 //! weights of slivers stay as good as the sheared vertices, nothing underflows or overflows, and any implementation of
 //! the filter gives the same bits.
 
+use crate::doubles::Doubles;
 use crate::method::{RtiMethod, TriangleHit, dominant_axis, is_degenerate, is_traceable, straddles};
 use photinus_num::Scalar;
 
@@ -46,13 +47,13 @@ impl<S: Scalar> Started<S> {
 impl Started<f32> {
     /// The sheared vertices, as [`finish`] takes them, of the triangle whose coordinates `at(vertex, axis)` gives.
     #[inline(always)]
-    pub fn shear_exactly(&self, at: impl Fn(usize, usize) -> f32) -> [[f64; 3]; 3] {
+    pub fn sheared(&self, at: impl Fn(usize, usize) -> f32) -> [[f32; 3]; 3] {
         let [kx, ky, kz] = self.axes;
         let vertex = |v: usize| {
             let z = at(v, kz) - self.origin[kz];
             let x = at(v, kx) - self.origin[kx] - self.shear[0] * z;
             let y = at(v, ky) - self.origin[ky] - self.shear[1] * z;
-            [f64::from(x), f64::from(y), f64::from(z)]
+            [x, y, z]
         };
         [vertex(0), vertex(1), vertex(2)]
     }
@@ -84,48 +85,33 @@ pub fn finish<S: Scalar>(sheared: &[[S; 3]; 3], dir_z: S) -> Option<TriangleHit<
 }
 
 /// What [`finish_lanes`] gives, by lane.
-pub struct LaneHits<const N: usize> {
-    /// Ray parameters; not a number where there is no hit.
-    pub t: [f64; N],
+pub struct LaneHits<D> {
+    /// Which lanes are hits; of the others the rest means nothing.
+    pub hits: u8,
+    /// Ray parameters.
+    pub t: D,
     /// Weights of second vertices.
-    pub alpha: [f64; N],
+    pub alpha: D,
     /// Weights of third vertices.
-    pub beta: [f64; N],
+    pub beta: D,
 }
 
-/// [`finish`] for `N` triangles at a time, each with a ray of its own: coordinates by vertex, axis and lane. No branch
-/// depends on what a lane holds.
+/// [`finish`] for several triangles at a time, each with a ray of its own: coordinates by vertex and axis. No branch depends
+/// on what a lane holds.
 #[inline(always)]
-pub fn finish_lanes<const N: usize>(sheared: &[[[f64; N]; 3]; 3], dir_z: &[f64; N]) -> LaneHits<N> {
+pub fn finish_lanes<D: Doubles>(sheared: &[[D; 3]; 3], dir_z: D) -> LaneHits<D> {
     let [a, b, c] = sheared;
-    let (mut u, mut v, mut w) = ([0.0; N], [0.0; N], [0.0; N]);
-    for i in 0..N {
-        u[i] = c[0][i] * b[1][i] - c[1][i] * b[0][i];
-    }
-    for i in 0..N {
-        v[i] = a[0][i] * c[1][i] - a[1][i] * c[0][i];
-    }
-    for i in 0..N {
-        w[i] = b[0][i] * a[1][i] - b[1][i] * a[0][i];
-    }
-    let mut out = LaneHits { t: [0.0; N], alpha: [0.0; N], beta: [0.0; N] };
-    for i in 0..N {
-        let det = u[i] + v[i] + w[i];
-        let inv_det = 1.0 / det;
-        let t = (u[i] * a[2][i] + v[i] * b[2][i] + w[i] * c[2][i]) * inv_det / dir_z[i];
-        // Where one of them is not a number the sum is none either.
-        let lower = |x: f64, y: f64| if x < y { x } else { y };
-        let upper = |x: f64, y: f64| if x > y { x } else { y };
-        let t = if lower(lower(u[i], v[i]), w[i]) < 0.0 {
-            if upper(upper(u[i], v[i]), w[i]) > 0.0 { f64::NAN } else { t }
-        } else {
-            t
-        };
-        out.t[i] = if det.abs() > 0.0 { t } else { f64::NAN };
-        out.alpha[i] = v[i] * inv_det;
-        out.beta[i] = w[i] * inv_det;
-    }
-    out
+    let zero = dir_z.all(0.0);
+    let u = c[0] * b[1] - c[1] * b[0];
+    let v = a[0] * c[1] - a[1] * c[0];
+    let w = b[0] * a[1] - b[1] * a[0];
+    let below = u.lt(zero) | v.lt(zero) | w.lt(zero);
+    let above = zero.lt(u) | zero.lt(v) | zero.lt(w);
+    let det = u + v + w;
+    let is_solid = zero.lt(det) | det.lt(zero);
+    let inv_det = dir_z.all(1.0) / det;
+    let t = (u * a[2] + v * b[2] + w * c[2]) * inv_det / dir_z;
+    LaneHits { hits: is_solid & !(below & above), t, alpha: v * inv_det, beta: w * inv_det }
 }
 
 impl<S: Scalar> RtiMethod<S> for Woop {

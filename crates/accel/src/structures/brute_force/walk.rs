@@ -15,6 +15,7 @@ use crate::reach::Reach;
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::RtiMethod;
+use photinus_intersect::doubles::Lanes;
 use photinus_intersect::methods::woop::{Started, Woop, finish_lanes};
 
 /// Rays of a batch: their state stays in the second cache, and triangles come from farther away once for all of them.
@@ -148,18 +149,19 @@ impl Blocked {
                 let woop = &under_way[candidate.place as usize].woop;
                 let (block, lane) = (candidate.id as usize / LANES, candidate.id as usize % LANES);
                 let rows = &self.blocks.vertices[block].rows;
-                let vertices = woop.shear_exactly(|vertex, axis| rows[3 * vertex + axis][lane]);
+                let vertices = woop.sheared(|vertex, axis| rows[3 * vertex + axis][lane]);
                 for (to, from) in sheared.as_flattened_mut().iter_mut().zip(vertices.as_flattened()) {
-                    to[i] = *from;
+                    to[i] = f64::from(*from);
                 }
                 dir_z[i] = f64::from(woop.dir_z);
             }
-            let found = finish_lanes(&sheared, &dir_z);
+            let found = finish_lanes(&sheared.map(|v| v.map(Lanes)), Lanes(dir_z));
             for (i, candidate) in group.iter().enumerate() {
                 let traced = &mut under_way[candidate.place as usize];
-                let (t, alpha, beta) = (found.t[i] as f32, found.alpha[i] as f32, found.beta[i] as f32);
+                let [t, alpha, beta] = [found.t, found.alpha, found.beta].map(|lanes| lanes.0[i] as f32);
+                let is_hit = found.hits >> i & 1 == 1;
                 let hit = Hit { t, alpha, beta, prim: candidate.id };
-                if (t >= traced.t_min) & (t <= traced.t_max) & t.is_finite() {
+                if is_hit & (t >= traced.t_min) & (t <= traced.t_max) & t.is_finite() {
                     hits += 1;
                     if hit.beats(&traced.best) {
                         traced.best = hit;

@@ -1,15 +1,15 @@
 //! Triangles that the filter left, of the rays of all slots: they are finished together, without a branch that depends on
 //! what comes out. Whether a triangle is hit is a coin tossed, and the divisions are long under way when it falls.
 
-use super::kernels::SET_LANES;
+use super::kernels::sixteen::Sixteen;
+use super::kernels::{Kernel, SET_LANES};
 use super::layout::WIDTH;
 use super::traverse::SLOTS;
 use photinus_geometry::Hit;
-use photinus_intersect::methods::woop::{LaneHits, finish_lanes};
+use photinus_intersect::methods::woop::finish_lanes;
 
-/// Triangles finished at a time: as many doubles as a register of the narrower of two sets of instructions holds. In
-/// wider ones the tests of nodes, which are under way at the same time, lose one of their three ports.
-pub const TOGETHER: usize = 4;
+/// Triangles finished at a time.
+pub const TOGETHER: usize = 8;
 
 /// All lanes of all slots, and a whole mask to be written.
 const ROOM: usize = (SLOTS + 1) * WIDTH;
@@ -21,14 +21,14 @@ pub struct Candidates {
     /// How many there are.
     pub len: usize,
     /// Vertices of those that are finished together, by vertex, axis and place, and their rays' directions.
-    sheared: [[[f64; TOGETHER]; 3]; 3],
-    dir_z: [f64; TOGETHER],
+    sheared: [[f32; TOGETHER]; 9],
+    dir_z: [f32; TOGETHER],
 }
 
 impl Candidates {
     /// No triangles.
     pub const NONE: Self =
-        Self { slots: [0; ROOM], lanes: [0; ROOM], len: 0, sheared: [[[0.0; TOGETHER]; 3]; 3], dir_z: [1.0; TOGETHER] };
+        Self { slots: [0; ROOM], lanes: [0; ROOM], len: 0, sheared: [[0.0; TOGETHER]; 9], dir_z: [1.0; TOGETHER] };
 
     /// Adds the lanes of a mask.
     #[inline(always)]
@@ -48,19 +48,29 @@ impl Candidates {
     /// Puts a candidate to place `i` of those to be finished: its sheared vertices, and its ray's direction along the
     /// third axis.
     #[inline(always)]
-    pub fn shear(&mut self, i: usize, vertices: &[[f64; 3]; 3], dir_z: f64) {
-        for (to, from) in self.sheared.iter_mut().zip(vertices) {
-            for (row, value) in to.iter_mut().zip(from) {
-                row[i] = *value;
-            }
+    pub fn shear(&mut self, i: usize, vertices: &[[f32; 3]; 3], dir_z: f32) {
+        for (row, value) in self.sheared.iter_mut().zip(vertices.as_flattened()) {
+            row[i] = *value;
         }
         self.dir_z[i] = dir_z;
     }
 
-    /// Finishes what was put to all places, the latest and older.
+    /// Finishes what was put to all places, the latest and older: which are hits, and their parameters and weights.
     #[inline(always)]
-    pub fn finish(&self) -> LaneHits<TOGETHER> {
-        finish_lanes(&self.sheared, &self.dir_z)
+    pub fn finish<K: Kernel>(&self, kernel: K) -> (u8, [[f32; 2 * TOGETHER]; 3]) {
+        let zeros = kernel.zeros();
+        let mut sheared = [[zeros.halves()[0]; 3]; 3];
+        for i in 0..3 {
+            for k in 0..3 {
+                sheared[i][k] = zeros.half(&self.sheared[3 * i + k]);
+            }
+        }
+        let found = finish_lanes(&sheared, zeros.half(&self.dir_z));
+        let mut out = [[0.0; 2 * TOGETHER]; 3];
+        K::Sixteen::rounded([found.t, found.t]).store(&mut out[0]);
+        K::Sixteen::rounded([found.alpha, found.alpha]).store(&mut out[1]);
+        K::Sixteen::rounded([found.beta, found.beta]).store(&mut out[2]);
+        (found.hits, out)
     }
 }
 

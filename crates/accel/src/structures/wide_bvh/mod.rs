@@ -9,6 +9,7 @@ mod emit;
 mod kernels;
 mod layout;
 mod packet;
+mod packet_test;
 mod packet_walk;
 mod ray_setup;
 mod summary;

@@ -5,8 +5,9 @@
 //! Tracing", 2001), and bounds of the packet leave out most boxes before any ray is tested (Reshetov, Soupikov, Hurley,
 //! "Multi-Level Ray Tracing Algorithm", 2005).
 
+use super::kernels::sixteen::Sixteen;
 use super::kernels::{Kernel, Reach};
-use super::layout::WIDTH;
+use super::layout::{Node, WIDTH};
 use crate::bounds::SLAB_SLACK;
 use photinus_geometry::{Hit, Ray};
 
@@ -41,8 +42,16 @@ pub struct Packet {
     pub reach_low: ByRay,
     /// Upper ends.
     pub reach_high: ByRay,
-    /// Nearest hits.
-    pub best: [Hit; PACKET],
+    /// The least and the greatest of them.
+    pub reach: [f32; 2],
+    /// Parameters of the nearest hits; infinite where there is none.
+    pub best_t: ByRay,
+    /// Weights of their second vertices.
+    pub best_alpha: ByRay,
+    /// Weights of their third vertices.
+    pub best_beta: ByRay,
+    /// Bits of their primitive ids.
+    pub best_prim: ByRay,
     /// Components of the directions along the third axis of the ray-triangle test.
     pub dir_z: ByRay,
     /// Axes of the ray-triangle test.
@@ -56,8 +65,10 @@ pub struct Packet {
 /// Least and greatest of what tells whether rays run closely together.
 #[derive(Clone, Copy)]
 pub struct PacketBounds {
-    shear: [[f32; 2]; 2],
-    origin: [[f32; 2]; 3],
+    /// Least and greatest shears of the ray-triangle test.
+    pub shear: [[f32; 2]; 2],
+    /// Least and greatest starts, by axis.
+    pub origin: [[f32; 2]; 3],
 }
 
 const NO_BOUNDS: PacketBounds = PacketBounds { shear: [[0.0; 2]; 2], origin: [[0.0; 2]; 3] };
@@ -129,16 +140,6 @@ pub fn are_alike(a: &Ray, b: &Ray) -> bool {
     (a.dir.x * b.dir.x > 0.0) & (a.dir.y * b.dir.y > 0.0) & (a.dir.z * b.dir.z > 0.0)
 }
 
-/// Whether a condition holds for all rays.
-#[inline(always)]
-fn all(holds: impl Fn(usize) -> bool) -> bool {
-    let mut every = 0;
-    for i in 0..PACKET {
-        every |= u16::from(holds(i)) << i;
-    }
-    every == u16::MAX
-}
-
 impl Packet {
     /// Without rays.
     pub const IDLE: Self = Self {
@@ -150,7 +151,11 @@ impl Packet {
         t_max: [0.0; PACKET],
         reach_low: [0.0; PACKET],
         reach_high: [0.0; PACKET],
-        best: [Hit::MISS; PACKET],
+        reach: [0.0; 2],
+        best_t: [Hit::MISS.t; PACKET],
+        best_alpha: [Hit::MISS.alpha; PACKET],
+        best_beta: [Hit::MISS.beta; PACKET],
+        best_prim: [f32::from_bits(Hit::MISS.prim); PACKET],
         dir_z: [1.0; PACKET],
         axes: [0; 3],
         bounds: NO_BOUNDS,
@@ -161,92 +166,136 @@ impl Packet {
     /// dominant axes, along an axis, or with negative parameters. What [`super::ray_setup::RaySetup::set`] computes for each, to the bit.
     #[inline(always)]
     pub fn set<K: Kernel>(&mut self, kernel: K, rays: &[Ray; PACKET], tree_size: f32) -> bool {
-        let mut dir = [[0.0; PACKET]; 3];
-        for (i, ray) in rays.iter().enumerate() {
-            for axis in 0..3 {
-                self.origin[axis][i] = ray.origin[axis];
-                dir[axis][i] = ray.dir[axis];
-            }
-            (self.t_min[i], self.t_max[i]) = (ray.t_min, ray.t_max);
-        }
+        let [ox, oy, oz, t_min, dx, dy, dz, t_max] = kernel.components(rays);
+        let (origin, dir, zeros) = ([ox, oy, oz], [dx, dy, dz], kernel.zeros());
         let first = rays[0].dir.abs();
         let kz = if first.x > first.y && first.x > first.z { 0 } else { 1 + usize::from(first.z > first.y) };
         let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
         self.axes = [kx, ky, kz];
-        let [x, y, z] = [&dir[kx], &dir[ky], &dir[kz]];
-        if !all(|i| z[i].abs() > x[i].abs() && z[i].abs() > y[i].abs() && self.t_min[i] >= 0.0) {
+        let [x, y, z] = [dir[kx], dir[ky], dir[kz]];
+        let infinity = zeros.all(f32::INFINITY);
+        let mut fit = x.abs().lt(z.abs()) & y.abs().lt(z.abs()) & zeros.le(t_min) & t_min.le(t_max);
+        for k in 0..3 {
+            // An axis along which a ray does not move is neither forward nor backward.
+            let (forward, backward) = (zeros.lt(dir[k]), dir[k].lt(zeros));
+            fit &= if backward & 1 == 1 { backward } else { forward };
+            fit &= origin[k].abs().lt(infinity) & dir[k].abs().lt(infinity);
+        }
+        // Most rays that do not run together are told apart here, before more is spent on them.
+        if fit != u16::MAX {
+            return false;
+        }
+        let shear = [x / z, y / z];
+        self.bounds.shear = [shear[0].extremes(), shear[1].extremes()];
+        self.bounds.origin = [ox.extremes(), oy.extremes(), oz.extremes()];
+        if !self.bounds.are_close(tree_size) {
             return false;
         }
         self.beam.octant = 0;
-        for axis in 0..3 {
-            let backward = dir[axis][0] < 0.0;
-            let mut inv = [0.0; PACKET];
-            for i in 0..PACKET {
-                inv[i] = 1.0 / dir[axis][i];
-                self.near_inv[axis][i] = inv[i] * (1.0 - SLAB_SLACK);
-                self.far_inv[axis][i] = inv[i] * (1.0 + SLAB_SLACK);
-            }
-            let is_finite = all(|i| self.far_inv[axis][i].abs() < f32::INFINITY);
-            let is_one_way = all(|i| (inv[i] < 0.0) == backward);
-            self.bounds.origin[axis] = kernel.extremes(&self.origin[axis]);
-            if !(is_finite && is_one_way) {
-                return false;
-            }
-            self.beam.near[axis] = (2 * axis as u32 + u32::from(backward)) * WIDTH as u32;
-            self.beam.far[axis] = (2 * axis as u32 + 1 - u32::from(backward)) * WIDTH as u32;
-            self.beam.octant |= usize::from(backward) << axis;
-        }
-        for i in 0..PACKET {
-            self.shear[0][i] = x[i] / z[i];
-            self.shear[1][i] = y[i] / z[i];
-        }
-        let mut is_fit = all(|i| self.t_min[i] <= self.t_max[i]);
-        self.bounds.shear = [kernel.extremes(&self.shear[0]), kernel.extremes(&self.shear[1])];
-        is_fit &= self.bounds.are_close(tree_size);
-        for axis in 0..3 {
-            is_fit &= all(|i| self.origin[axis][i].abs() < f32::INFINITY && dir[axis][i].abs() < f32::INFINITY);
-        }
-        if !is_fit {
-            return false;
-        }
-        self.dir_z = *z;
-        self.best = [Hit::MISS; PACKET];
-        for i in 0..PACKET {
-            let reach = Reach::new(self.dir_z[i], self.t_min[i], self.t_max[i]);
-            (self.reach_low[i], self.reach_high[i]) = (reach.low, reach.high);
-        }
-        self.set_beam(kernel);
-        true
-    }
-
-    /// Ends the search of ray `i` at `t_max`.
-    #[inline(always)]
-    pub fn set_end(&mut self, i: usize, t_max: f32) {
-        self.t_max[i] = t_max;
-        let reach = Reach::new(self.dir_z[i], self.t_min[i], t_max);
-        (self.reach_low[i], self.reach_high[i]) = (reach.low, reach.high);
-    }
-
-    /// Lets the beam end with its last ray.
-    #[inline(always)]
-    pub fn shorten_beam<K: Kernel>(&mut self, kernel: K) {
-        [_, self.beam.t_max] = kernel.extremes(&self.t_max);
-    }
-
-    #[inline(always)]
-    fn set_beam<K: Kernel>(&mut self, kernel: K) {
-        for axis in 0..3 {
-            let [low, high] = self.bounds.origin[axis];
+        let mut is_finite = true;
+        for k in 0..3 {
+            let backward = rays[0].dir[k] < 0.0;
+            self.beam.near[k] = (2 * k as u32 + u32::from(backward)) * WIDTH as u32;
+            self.beam.far[k] = (2 * k as u32 + 1 - u32::from(backward)) * WIDTH as u32;
+            self.beam.octant |= usize::from(backward) << k;
             // Rounding is monotonic: what holds for the ends holds for all between, to the bit.
-            let forward = self.beam.near[axis] < self.beam.far[axis];
-            self.beam.near_origin[axis] = if forward { high } else { low };
-            self.beam.far_origin[axis] = if forward { low } else { high };
-            self.beam.near_inv[axis] = kernel.extremes(&self.near_inv[axis]);
-            self.beam.far_inv[axis] = kernel.extremes(&self.far_inv[axis]);
+            let [low, high] = self.bounds.origin[k];
+            (self.beam.near_origin[k], self.beam.far_origin[k]) = if backward { (low, high) } else { (high, low) };
+            let inv = zeros.all(1.0) / dir[k];
+            let (near, far) = (inv * zeros.all(1.0 - SLAB_SLACK), inv * zeros.all(1.0 + SLAB_SLACK));
+            near.store(&mut self.near_inv[k]);
+            far.store(&mut self.far_inv[k]);
+            origin[k].store(&mut self.origin[k]);
+            (self.beam.near_inv[k], self.beam.far_inv[k]) = (near.extremes(), far.extremes());
+            is_finite &= self.beam.far_inv[k].iter().all(|inv| inv.is_finite());
         }
-        [self.beam.t_min, _] = kernel.extremes(&self.t_min);
-        self.shorten_beam(kernel);
+        shear[0].store(&mut self.shear[0]);
+        shear[1].store(&mut self.shear[1]);
+        z.store(&mut self.dir_z);
+        t_min.store(&mut self.t_min);
+        t_max.store(&mut self.t_max);
+        self.best_t = Self::IDLE.best_t;
+        (self.best_alpha, self.best_beta) = (Self::IDLE.best_alpha, Self::IDLE.best_beta);
+        self.best_prim = Self::IDLE.best_prim;
+        let (low, high) = reach(kernel, t_min, t_max, z);
+        low.store(&mut self.reach_low);
+        high.store(&mut self.reach_high);
+        self.reach = [low.extremes()[0], high.extremes()[1]];
+        (self.beam.t_min, self.beam.t_max) = (t_min.extremes()[0], t_max.extremes()[1]);
+        is_finite
     }
+
+    /// Rays that may enter the box in a slot of a node, as a mask.
+    #[inline(always)]
+    pub fn enter<K: Kernel>(&self, kernel: K, node: &Node, slot: usize) -> u16 {
+        let zeros = kernel.zeros();
+        let (mut entry, mut exit) = (zeros.load(&self.t_min), zeros.load(&self.t_max));
+        for axis in 0..3 {
+            let at = |place: u32| zeros.all(node.bounds[place as usize / WIDTH % 6][slot % WIDTH]);
+            let origin = zeros.load(&self.origin[axis]);
+            let t_near = (at(self.beam.near[axis]) - origin) * zeros.load(&self.near_inv[axis]);
+            let t_far = (at(self.beam.far[axis]) - origin) * zeros.load(&self.far_inv[axis]);
+            (entry, exit) = (t_near.max(entry), t_far.min(exit));
+        }
+        entry.le(exit)
+    }
+
+    /// The nearest hit of a ray.
+    #[inline(always)]
+    pub fn best(&self, i: usize) -> Hit {
+        let prim = self.best_prim[i].to_bits();
+        Hit { t: self.best_t[i], alpha: self.best_alpha[i], beta: self.best_beta[i], prim }
+    }
+
+    /// Takes up a nearer hit of a ray, whose search ends there or, where any hit will do, altogether.
+    pub fn set_best(&mut self, i: usize, hit: Hit, is_end: bool) {
+        (self.best_t[i], self.best_alpha[i], self.best_beta[i]) = (hit.t, hit.alpha, hit.beta);
+        self.best_prim[i] = f32::from_bits(hit.prim);
+        let reach = Reach::new(self.dir_z[i], self.t_min[i], hit.t);
+        (self.t_max[i], self.reach_low[i], self.reach_high[i]) = match is_end {
+            true => (f32::NEG_INFINITY, f32::INFINITY, f32::NEG_INFINITY),
+            false => (hit.t, reach.low, reach.high),
+        };
+    }
+
+    /// Lets the searches of the rays of a mask end at `t_max`.
+    #[inline(always)]
+    pub fn set_ends<K: Kernel>(&mut self, kernel: K, rays: u16, t_max: K::Sixteen) {
+        let zeros = kernel.zeros();
+        t_max.select(rays, zeros.load(&self.t_max)).store(&mut self.t_max);
+        let (low, high) = reach(kernel, zeros.load(&self.t_min), t_max, zeros.load(&self.dir_z));
+        low.select(rays, zeros.load(&self.reach_low)).store(&mut self.reach_low);
+        high.select(rays, zeros.load(&self.reach_high)).store(&mut self.reach_high);
+    }
+
+    /// Ends the searches of the rays of a mask: nothing is within their reach.
+    #[inline(always)]
+    pub fn end<K: Kernel>(&mut self, kernel: K, rays: u16) {
+        let zeros = kernel.zeros();
+        let (high, low) = (zeros.all(f32::NEG_INFINITY), zeros.all(f32::INFINITY));
+        high.select(rays, zeros.load(&self.t_max)).store(&mut self.t_max);
+        low.select(rays, zeros.load(&self.reach_low)).store(&mut self.reach_low);
+        high.select(rays, zeros.load(&self.reach_high)).store(&mut self.reach_high);
+    }
+
+    /// Lets the packet end with its last ray.
+    #[inline(always)]
+    pub fn shorten<K: Kernel>(&mut self, kernel: K) {
+        let zeros = kernel.zeros();
+        self.beam.t_max = zeros.load(&self.t_max).extremes()[1];
+        self.reach = [zeros.load(&self.reach_low).extremes()[0], zeros.load(&self.reach_high).extremes()[1]];
+    }
+}
+
+/// What [`Reach`] says of each ray; all run the same way along the third axis, of which `z` are the
+/// components.
+#[inline(always)]
+fn reach<K: Kernel>(kernel: K, t_min: K::Sixteen, t_max: K::Sixteen, z: K::Sixteen) -> (K::Sixteen, K::Sixteen) {
+    let zeros = kernel.zeros();
+    let (a, b) = (t_min * z, t_max * z);
+    let (low, high) = if z.lt(zeros) == u16::MAX { (b, a) } else { (a, b) };
+    let (slack, least) = (zeros.all(SLAB_SLACK), zeros.all(f32::MIN_POSITIVE));
+    (low - (low.abs() * slack + least), high + (high.abs() * slack + least))
 }
 
 /// The beam of several packets; `None` where they had better go one by one.

@@ -1,14 +1,12 @@
 //! The walk of packets through the tree: a node at a time for all rays of up to four packets.
 
 use super::WideBvh;
-use super::candidates::choose;
 use super::kernels::Kernel;
-use super::layout::{BLOCK, Child, NODE, TriangleBlock, WIDTH};
-use super::packet::{Beam, BeamSlots, ByRay, PACKET, Packet, are_alike, common_beam};
+use super::layout::{BLOCK, Child, NODE, WIDTH};
+use super::packet::{Beam, BeamSlots, PACKET, Packet, are_alike, common_beam};
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
-use photinus_intersect::methods::woop::{LaneHits, finish_lanes};
 use photinus_profile::ticks;
 
 /// Most packets that walk together: an eight times eight pixels' worth.
@@ -36,61 +34,6 @@ struct PacketWalk<'a, K: Kernel> {
     count: usize,
     beam: Beam,
     stack: Vec<Waiting>,
-    candidates: Candidates,
-}
-
-/// Triangles finished at a time.
-const TOGETHER: usize = 8;
-/// A packet's rays with all triangles of a block, and as many places as are read beyond the last.
-const ROOM: usize = PACKET * WIDTH + TOGETHER;
-
-/// What the filter left of a block.
-struct Candidates {
-    /// Sheared vertices, by vertex and axis.
-    sheared: [[f32; ROOM]; 9],
-    dir_z: [f32; ROOM],
-    /// Numbers in the bundle and in the block.
-    rays: [u8; ROOM],
-    lanes: [u8; ROOM],
-    len: usize,
-}
-
-impl Candidates {
-    const NONE: Self =
-        Self { sheared: [[0.0; ROOM]; 9], dir_z: [1.0; ROOM], rays: [0; ROOM], lanes: [0; ROOM], len: 0 };
-
-    /// Adds rays of a packet's mask with the triangle in `lane`.
-    #[inline(always)]
-    fn add(&mut self, mut rays: u16, packet: usize, lane: usize, sheared: &[ByRay; 9], dir_z: &ByRay) {
-        while rays != 0 {
-            let ray = rays.trailing_zeros() as usize;
-            let place = self.len % ROOM;
-            for (to, from) in self.sheared.iter_mut().zip(sheared) {
-                to[place] = from[ray];
-            }
-            self.dir_z[place] = dir_z[ray];
-            (self.rays[place], self.lanes[place]) = ((packet * PACKET + ray) as u8, lane as u8);
-            self.len += 1;
-            rays &= rays - 1;
-        }
-    }
-
-    /// Finishes those from `first`.
-    #[inline(always)]
-    fn finish(&self, first: usize) -> LaneHits<TOGETHER> {
-        let (mut sheared, mut dir_z) = ([[[0.0; TOGETHER]; 3]; 3], [0.0; TOGETHER]);
-        for (row, values) in self.sheared.iter().enumerate() {
-            let values = &values[first..][..TOGETHER];
-            for i in 0..TOGETHER {
-                sheared[row / 3][row % 3][i] = f64::from(values[i]);
-            }
-        }
-        let values = &self.dir_z[first..][..TOGETHER];
-        for i in 0..TOGETHER {
-            dir_z[i] = f64::from(values[i]);
-        }
-        finish_lanes(&sheared, &dir_z)
-    }
 }
 
 impl<'a, K: Kernel> PacketWalk<'a, K> {
@@ -106,7 +49,6 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             count: 0,
             beam: Packet::IDLE.beam,
             stack: vec![nothing; tree.stack_places],
-            candidates: Candidates::NONE,
         }
     }
 
@@ -159,7 +101,13 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                         counters.ticks.pairs += 1;
                     }
                 }
-                _ => self.visit_ids::<ANY, COUNT>(rays, child, reached, counters),
+                _ => {
+                    self.visit_ids::<ANY, COUNT>(rays, child, reached, counters);
+                    for packet in &mut self.packets[self.first..self.first + self.count] {
+                        packet.shorten(self.kernel);
+                    }
+                    self.shorten_beam();
+                }
             }
         }
         if COUNT {
@@ -182,7 +130,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             for p in 0..self.count {
                 if rays[p] != 0 {
                     let packet = &self.packets[self.first + p];
-                    waiting.rays[p] = rays[p] & self.kernel.packet_box(packet, node, slot);
+                    waiting.rays[p] = rays[p] & packet.enter(self.kernel, node, slot);
                     any |= waiting.rays[p];
                 }
             }
@@ -200,20 +148,22 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     ) {
         let block = &self.tree.blocks[child.index()];
         let len = block.len();
-        self.candidates.len = 0;
-        let mut sheared = [[0.0; PACKET]; 9];
         let mut hits = 0;
         for p in 0..self.count {
             if reached[p] == 0 {
                 continue;
             }
-            if self.candidates.len > ROOM - TOGETHER - PACKET * len {
-                hits += self.finish_all::<ANY>(block);
+            let packet = &mut self.packets[self.first + p];
+            let mut lanes = self.kernel.packet_block(packet, block);
+            let mut hit = 0;
+            while lanes != 0 {
+                let found = packet.test::<K, ANY>(self.kernel, block, lanes.trailing_zeros() as usize, reached[p]);
+                hits += u64::from(found.count_ones());
+                hit |= found;
+                lanes &= lanes - 1;
             }
-            let packet = &self.packets[self.first + p];
-            for lane in 0..len {
-                let passed = reached[p] & self.kernel.packet_triangle(packet, block, lane, &mut sheared);
-                self.candidates.add(passed, p, lane, &sheared, &packet.dir_z);
+            if hit != 0 {
+                packet.shorten(self.kernel);
             }
             if COUNT {
                 for _ in 0..reached[p].count_ones() {
@@ -221,7 +171,6 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                 }
             }
         }
-        hits += self.finish_all::<ANY>(block);
         if hits > 0 {
             self.shorten_beam();
         }
@@ -235,47 +184,11 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     fn shorten_beam(&mut self) {
         self.beam.t_max = f32::NEG_INFINITY;
         for packet in &self.packets[self.first..self.first + self.count] {
-            self.beam.t_max = self.beam.t_max.max(self.kernel.extremes(&packet.t_max)[1]);
+            self.beam.t_max = self.beam.t_max.max(packet.beam.t_max);
         }
     }
 
-    /// Finishes all candidates and returns how many are hits.
-    #[inline(always)]
-    fn finish_all<const ANY: bool>(&mut self, block: &TriangleBlock) -> u64 {
-        let (mut hits, mut first) = (0, 0);
-        while first < self.candidates.len {
-            hits += self.finish::<ANY>(block, first);
-            first += TOGETHER;
-        }
-        self.candidates.len = 0;
-        hits
-    }
-
-    /// Finishes the next candidates and returns how many are hits.
-    #[inline(always)]
-    fn finish<const ANY: bool>(&mut self, block: &TriangleBlock, first: usize) -> u64 {
-        let count = (self.candidates.len - first).min(TOGETHER);
-        let found = self.candidates.finish(first);
-        let mut hits = 0;
-        for place in 0..count {
-            let lane = usize::from(self.candidates.lanes[first + place]) % WIDTH;
-            let ray = usize::from(self.candidates.rays[first + place]);
-            let (t, alpha, beta) = (found.t[place] as f32, found.alpha[place] as f32, found.beta[place] as f32);
-            let packet = &mut self.packets[self.first + ray / PACKET];
-            let ray = ray % PACKET;
-            let best = packet.best[ray];
-            let prim = block.ids[lane];
-            let accepted = (t >= packet.t_min[ray]) & (t <= packet.t_max[ray]) & t.is_finite();
-            let beats = accepted & ((t < best.t) | ((t == best.t) & (prim < best.prim)));
-            hits += u64::from(accepted);
-            packet.best[ray] = choose(beats, Hit { t, alpha, beta, prim }, best);
-            if beats {
-                packet.set_end(ray, if ANY { f32::NEG_INFINITY } else { t });
-            }
-        }
-        hits
-    }
-
+    /// Tests primitives one by one. Apart from the rest, and so without a kernel: its instructions are only known there.
     #[inline(never)]
     fn visit_ids<const ANY: bool, const COUNT: bool>(
         &mut self,
@@ -292,19 +205,17 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                 continue;
             }
             let tests_begun = if COUNT { ticks() } else { 0 };
-            let mut best = packet.best[i];
+            let mut best = packet.best(i);
             let work = self.tree.tester.closest_hit(&rays[self.first + p][i], ids, &mut best);
-            if best.t < packet.best[i].t {
-                packet.set_end(i, if ANY { f32::NEG_INFINITY } else { best.t });
+            if best.t < packet.best_t[i] {
+                packet.set_best(i, best, ANY);
             }
-            packet.best[i] = best;
             if COUNT {
                 counters.add_leaf(ids.len(), work);
                 counters.ticks.tests += ticks().wrapping_sub(tests_begun);
                 counters.ticks.pairs += 1;
             }
         }
-        self.shorten_beam();
     }
 }
 
@@ -340,8 +251,8 @@ impl WideBvh {
             done.resize(number * BUNDLE, false);
             done.extend(are_packets);
             for (p, packet) in walk.packets.iter().enumerate().filter(|(p, _)| are_packets[*p]) {
-                for (i, hit) in packet.best.iter().enumerate() {
-                    set((number * BUNDLE + p) * PACKET + i, *hit);
+                for i in 0..PACKET {
+                    set((number * BUNDLE + p) * PACKET + i, packet.best(i));
                 }
             }
         }

@@ -156,7 +156,11 @@ impl WideBvh {
             let tests_begun = if COUNT { ticks() } else { 0 };
             walk.visit_blocks::<ANY, COUNT>(counters);
             if walk.states.lens[IDS] > 0 {
-                walk.visit_ids::<ANY, COUNT>(counters);
+                let (indices, len) = walk.states.take(IDS);
+                walk.visit_ids::<COUNT>(&indices[..len], counters);
+                for &index in &indices[..len] {
+                    walk.leave_leaf::<ANY>(index);
+                }
             }
             if COUNT {
                 counters.ticks.tests += ticks().wrapping_sub(tests_begun);
@@ -271,17 +275,18 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             let slot = &self.slots[index];
             let block = &self.tree.blocks[slot.child.index()];
             let woop = &slot.setup.woop;
-            let sheared = woop.shear_exactly(|vertex, axis| block.vertices[3 * vertex + axis][lane]);
-            self.candidates.shear(i, &sheared, f64::from(woop.dir_z));
+            let sheared = woop.sheared(|vertex, axis| block.vertices[3 * vertex + axis][lane]);
+            self.candidates.shear(i, &sheared, woop.dir_z);
         }
-        let found = self.candidates.finish();
+        let (are_hits, [t, alpha, beta]) = self.candidates.finish(self.kernel);
         let mut hits = 0;
         for i in 0..count {
             let (index, lane) = self.candidates.at(first + i);
             let slot = &mut self.slots[index];
             let prim = self.tree.blocks[slot.child.index()].ids[lane];
-            let (t, alpha, beta) = (found.t[i] as f32, found.alpha[i] as f32, found.beta[i] as f32);
-            let accepted = (t >= slot.setup.t_min) & (t <= slot.t_max) & t.is_finite();
+            let (t, alpha, beta) = (t[i], alpha[i], beta[i]);
+            let is_hit = are_hits >> i & 1 == 1;
+            let accepted = is_hit & (t >= slot.setup.t_min) & (t <= slot.t_max) & t.is_finite();
             let beats = accepted & ((t < slot.best.t) | ((t == slot.best.t) & (prim < slot.best.prim)));
             hits += u64::from(accepted);
             slot.best = choose(beats, Hit { t, alpha, beta, prim }, slot.best);
@@ -290,10 +295,10 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         hits
     }
 
+    /// Tests primitives one by one. Apart from the rest, and so without the kernel: its instructions are only known there.
     #[inline(never)]
-    fn visit_ids<const ANY: bool, const COUNT: bool>(&mut self, counters: &mut RayCounters) {
-        let (indices, len) = self.states.take(IDS);
-        for &index in &indices[..len] {
+    fn visit_ids<const COUNT: bool>(&mut self, indices: &[u8], counters: &mut RayCounters) {
+        for &index in indices {
             let slot = &mut self.slots[usize::from(index) % SLOTS];
             let ids = &self.tree.ids[slot.child.ids_range()];
             let work = self.tree.tester.closest_hit(&self.rays[slot.ray], ids, &mut slot.best);
@@ -301,7 +306,6 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             if COUNT {
                 counters.add_leaf(ids.len(), work);
             }
-            self.leave_leaf::<ANY>(index);
         }
     }
 

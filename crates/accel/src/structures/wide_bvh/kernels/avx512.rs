@@ -1,11 +1,12 @@
 //! AVX-512 on eight lanes: mask registers and 32 vector registers. Sixteen lanes would share fewer ports and gain
 //! nothing on nodes of eight.
 
-use super::{Kernel, Lanes, Reach};
+use super::sixteen::avx512::One;
+use super::{Kernel, Lanes, Reach, eight};
 use crate::structure::RayCounters;
 use crate::structures::wide_bvh::WideBvh;
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
-use crate::structures::wide_bvh::packet::{Beam, BeamSlots, ByRay, Packet};
+use crate::structures::wide_bvh::packet::{Beam, BeamSlots, PACKET, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{Hit, Ray};
 use std::arch::x86_64::*;
@@ -67,6 +68,8 @@ fn trace<const ANY: bool, const COUNT: bool>(
 }
 
 impl Kernel for Avx512 {
+    type Sixteen = One;
+
     #[inline(always)]
     fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
         // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads and stores are of eight words each, and
@@ -154,28 +157,9 @@ impl Kernel for Avx512 {
 
     #[inline(always)]
     fn beam(self, beam: &Beam, node: &Node, out: &mut BeamSlots) -> usize {
-        // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the loads and stores are of eight words each, and
-        // `near` and `far` are places of bounds below 6 x 8.
+        // SAFETY: `self` proves that the machine has AVX-512F, VL and DQ; the stores are of eight words each.
         unsafe {
-            let spread = |x: f32| _mm256_set1_ps(x);
-            let bounds = node.bounds.as_ptr().cast::<f32>();
-            let mut entry = spread(beam.t_min);
-            let mut exit = spread(beam.t_max);
-            for axis in 0..3 {
-                let near = _mm256_loadu_ps(bounds.add(beam.near[axis] as usize));
-                let far = _mm256_loadu_ps(bounds.add(beam.far[axis] as usize));
-                let enter = _mm256_sub_ps(near, spread(beam.near_origin[axis]));
-                let leave = _mm256_sub_ps(far, spread(beam.far_origin[axis]));
-                let [a, b] = beam.near_inv[axis].map(|inv| _mm256_mul_ps(enter, spread(inv)));
-                entry = _mm256_max_ps(_mm256_min_ps(a, b), entry);
-                let [a, b] = beam.far_inv[axis].map(|inv| _mm256_mul_ps(leave, spread(inv)));
-                exit = _mm256_min_ps(_mm256_max_ps(a, b), exit);
-            }
-            // The order of slots, each index in its own lane; the permutations look at the lowest three bits.
-            let order = _mm256_set1_epi32(node.orders[beam.octant % 8] as i32);
-            let order = _mm256_srlv_epi32(order, _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
-            let entry = _mm256_permutevar8x32_ps(entry, order);
-            let exit = _mm256_permutevar8x32_ps(exit, order);
+            let (entry, exit, order) = eight::beam(beam, node);
             let mask = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(entry, exit);
             _mm256_storeu_si256(out.slots.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask, order));
             _mm256_storeu_ps(out.entries.as_mut_ptr(), _mm256_maskz_compress_ps(mask, entry));
@@ -184,71 +168,28 @@ impl Kernel for Avx512 {
     }
 
     #[inline(always)]
-    fn packet_box(self, packet: &Packet, node: &Node, slot: usize) -> u16 {
-        // SAFETY: `self` proves that the machine has AVX-512F; the loads and stores are of sixteen words each, `near` and
-        // `far` are the first of eight bounds below 6 x 8, and a slot is below 8.
-        unsafe {
-            let load = |x: &ByRay| _mm512_loadu_ps(x.as_ptr());
-            let bounds = node.bounds.as_ptr().cast::<f32>().add(slot % WIDTH);
-            let mut entry = load(&packet.t_min);
-            let mut exit = load(&packet.t_max);
-            for axis in 0..3 {
-                let near = _mm512_set1_ps(*bounds.add(packet.beam.near[axis] as usize));
-                let far = _mm512_set1_ps(*bounds.add(packet.beam.far[axis] as usize));
-                let origin = load(&packet.origin[axis]);
-                let t_near = _mm512_mul_ps(_mm512_sub_ps(near, origin), load(&packet.near_inv[axis]));
-                let t_far = _mm512_mul_ps(_mm512_sub_ps(far, origin), load(&packet.far_inv[axis]));
-                entry = _mm512_max_ps(t_near, entry);
-                exit = _mm512_min_ps(t_far, exit);
-            }
-            _mm512_cmp_ps_mask::<_CMP_LE_OQ>(entry, exit)
-        }
+    fn packet_block(self, packet: &Packet, block: &TriangleBlock) -> u32 {
+        // SAFETY: `self` proves that the machine has AVX2 and more.
+        unsafe { eight::packet_block(packet, block) }
     }
 
     #[inline(always)]
-    fn packet_triangle(self, packet: &Packet, block: &TriangleBlock, lane: usize, sheared: &mut [ByRay; 9]) -> u16 {
-        // SAFETY: `self` proves that the machine has AVX-512F; the loads are of sixteen words each, axes are below 3, and a
-        // lane is below 8.
-        unsafe {
-            let load = |x: &ByRay| _mm512_loadu_ps(x.as_ptr());
-            let [kx, ky, kz] = packet.axes.map(|k| k % 3);
-            let origin = [load(&packet.origin[kx]), load(&packet.origin[ky]), load(&packet.origin[kz])];
-            let shear_by = [load(&packet.shear[0]), load(&packet.shear[1])];
-            let vertices = block.vertices.as_ptr().cast::<f32>().add(lane % WIDTH);
-            let at = |v: usize, k: usize| _mm512_set1_ps(*vertices.add((3 * v + k) * WIDTH));
-            let mut x = [_mm512_setzero_ps(); 3];
-            let mut y = x;
-            let mut z = x;
-            for v in 0..3 {
-                z[v] = _mm512_sub_ps(at(v, kz), origin[2]);
-                let shear = |k: usize, i: usize| {
-                    _mm512_sub_ps(_mm512_sub_ps(at(v, k), origin[i]), _mm512_mul_ps(shear_by[i], z[v]))
-                };
-                x[v] = shear(kx, 0);
-                y[v] = shear(ky, 1);
-                for (axis, row) in [x[v], y[v], z[v]].into_iter().enumerate() {
-                    _mm512_storeu_ps(sheared[3 * v + axis].as_mut_ptr(), row);
-                }
-            }
-            let edge = |i: usize, j: usize| _mm512_sub_ps(_mm512_mul_ps(x[i], y[j]), _mm512_mul_ps(y[i], x[j]));
-            let edges = [edge(2, 1), edge(0, 2), edge(1, 0)];
-            let zero = _mm512_setzero_ps();
-            let least = _mm512_min_ps(_mm512_min_ps(z[0], z[1]), z[2]);
-            let most = _mm512_max_ps(_mm512_max_ps(z[0], z[1]), z[2]);
-            let below = edges.map(|e| _mm512_cmp_ps_mask::<_CMP_LT_OQ>(e, zero));
-            let above = edges.map(|e| _mm512_cmp_ps_mask::<_CMP_GT_OQ>(e, zero));
-            let beyond = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(least, load(&packet.reach_high))
-                | _mm512_cmp_ps_mask::<_CMP_LT_OQ>(most, load(&packet.reach_low));
-            !beyond & !((below[0] | below[1] | below[2]) & (above[0] | above[1] | above[2]))
-        }
+    fn zeros(self) -> One {
+        // SAFETY: `self` proves that the machine has AVX-512F.
+        unsafe { One::zeros() }
     }
 
     #[inline(always)]
-    fn extremes(self, x: &ByRay) -> [f32; 2] {
-        // SAFETY: `self` proves that the machine has AVX-512F; the load is of sixteen words.
+    fn components(self, rays: &[Ray; PACKET]) -> [One; 8] {
+        let (first, second) = rays.split_at(WIDTH);
+        // SAFETY: `self` proves that the machine has AVX-512F and DQ; both halves are of eight rays.
         unsafe {
-            let x = _mm512_loadu_ps(x.as_ptr());
-            [_mm512_reduce_min_ps(x), _mm512_reduce_max_ps(x)]
+            let (a, b) = (eight::components(first), eight::components(second));
+            let mut out = [One::zeros(); 8];
+            for i in 0..8 {
+                out[i] = One::from_halves(a[i], b[i]);
+            }
+            out
         }
     }
 

@@ -8,15 +8,23 @@
 pub mod avx2;
 #[cfg(target_arch = "x86_64")]
 pub mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod eight;
 pub mod scalar;
+pub mod sixteen;
 
 use super::layout::{Child, Node, TriangleBlock, WIDTH};
-use super::packet::{Beam, BeamSlots, ByRay, Packet};
+use super::packet::{Beam, BeamSlots, PACKET, Packet};
 use super::ray_setup::RaySetup;
 pub use crate::reach::Reach;
+use photinus_geometry::Ray;
+use sixteen::Sixteen;
 
 /// A kernel: the tests of one instruction set. Having one proves that the machine can run it.
 pub trait Kernel: Copy {
+    /// A number for each ray of a packet.
+    type Sixteen: Sixteen;
+
     /// Writes the children of `node` that the ray may enter at a parameter up to `t_max` to `out`, from far to near,
     /// and returns how many they are; what lies behind them in `out` is left undefined.
     fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize;
@@ -32,15 +40,15 @@ pub trait Kernel: Copy {
     /// are; what lies behind them is left undefined.
     fn beam(self, beam: &Beam, node: &Node, out: &mut BeamSlots) -> usize;
 
-    /// Rays of the packet that may enter the box in `slot`, as a mask.
-    fn packet_box(self, packet: &Packet, node: &Node, slot: usize) -> u16;
+    /// Triangles of `block` that any ray of the packet may hit within its reach, as a mask of lanes: those that do not lie
+    /// on one side of all rays, of which bounds in the same arithmetic, whose rounding is monotonic, are sure.
+    fn packet_block(self, packet: &Packet, block: &TriangleBlock) -> u32;
 
-    /// Rays of the packet that may hit the triangle in `lane` within their reach, as a mask; what [`Kernel::block`] says of
-    /// them one by one. Its vertices, sheared for each ray, go to `sheared`, by vertex and axis.
-    fn packet_triangle(self, packet: &Packet, block: &TriangleBlock, lane: usize, sheared: &mut [ByRay; 9]) -> u16;
+    /// Zeros, from which the numbers of packets are made.
+    fn zeros(self) -> Self::Sixteen;
 
-    /// The least and the greatest of all; undefined where one is not a number.
-    fn extremes(self, x: &ByRay) -> [f32; 2];
+    /// The rays' components by ray, in the order in which a ray holds them.
+    fn components(self, rays: &[Ray; PACKET]) -> [Self::Sixteen; 8];
 
     /// Asks for the five cache lines from `start`, a node or a block, to be near soon.
     fn prefetch(self, start: *const u8);

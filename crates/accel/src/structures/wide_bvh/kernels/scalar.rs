@@ -1,10 +1,11 @@
 //! Plain Rust: the twin that the other kernels are tested against.
 
+use super::sixteen::scalar::Plain;
 use super::{Kernel, Lanes, Reach};
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
-use crate::structures::wide_bvh::packet::{Beam, BeamSlots, ByRay, PACKET, Packet};
+use crate::structures::wide_bvh::packet::{Beam, BeamSlots, PACKET, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
-use photinus_geometry::NO_HIT;
+use photinus_geometry::{NO_HIT, Ray};
 
 /// The kernel.
 #[derive(Clone, Copy)]
@@ -23,6 +24,8 @@ fn min(a: f32, b: f32) -> f32 {
 }
 
 impl Kernel for Scalar {
+    type Sixteen = Plain;
+
     #[inline(always)]
     fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
         let mut entries = [ray.t_min; WIDTH];
@@ -113,47 +116,48 @@ impl Kernel for Scalar {
     }
 
     #[inline(always)]
-    fn packet_box(self, packet: &Packet, node: &Node, slot: usize) -> u16 {
-        let (mut entry, mut exit) = (packet.t_min, packet.t_max);
-        for axis in 0..3 {
-            let near = node.bounds[packet.beam.near[axis] as usize / WIDTH][slot];
-            let far = node.bounds[packet.beam.far[axis] as usize / WIDTH][slot];
-            for i in 0..PACKET {
-                entry[i] = max((near - packet.origin[axis][i]) * packet.near_inv[axis][i], entry[i]);
-                exit[i] = min((far - packet.origin[axis][i]) * packet.far_inv[axis][i], exit[i]);
-            }
-        }
-        (0..PACKET).fold(0, |mask, i| mask | u16::from(entry[i] <= exit[i]) << i)
-    }
-
-    #[inline(always)]
-    fn packet_triangle(self, packet: &Packet, block: &TriangleBlock, lane: usize, sheared: &mut [ByRay; 9]) -> u16 {
-        let [kx, ky, kz] = packet.axes;
-        let mut mask = 0;
-        for i in 0..PACKET {
+    fn packet_block(self, packet: &Packet, block: &TriangleBlock) -> u32 {
+        let ([kx, ky, kz], bounds) = (packet.axes, &packet.bounds);
+        (0..WIDTH).fold(0, |mask, lane| {
+            let from = |v: usize, k: usize| {
+                let [least, most] = bounds.origin[k];
+                [block.vertices[3 * v + k][lane] - most, block.vertices[3 * v + k][lane] - least]
+            };
             let vertex = |v: usize| {
-                let at = |k: usize| block.vertices[3 * v + k][lane] - packet.origin[k][i];
-                let z = at(kz);
-                [at(kx) - packet.shear[0][i] * z, at(ky) - packet.shear[1][i] * z, z]
+                let z = from(v, kz);
+                let sheared = |k: usize, i: usize| {
+                    let [[a, b], [c, d]] = bounds.shear[i].map(|s| z.map(|z| s * z));
+                    let x = from(v, k);
+                    [x[0] - max(max(a, b), max(c, d)), x[1] - min(min(a, b), min(c, d))]
+                };
+                [sheared(kx, 0), sheared(ky, 1), z]
             };
             let v = [vertex(0), vertex(1), vertex(2)];
-            for (row, value) in sheared.iter_mut().zip(v.as_flattened()) {
-                row[i] = *value;
-            }
-            let edge = |i: usize, j: usize| v[i][0] * v[j][1] - v[i][1] * v[j][0];
-            let edges = [edge(2, 1), edge(0, 2), edge(1, 0)];
-            let straddles = edges.iter().any(|e| *e < 0.0) && edges.iter().any(|e| *e > 0.0);
-            let least = min(min(v[0][2], v[1][2]), v[2][2]);
-            let most = max(max(v[0][2], v[1][2]), v[2][2]);
-            let beyond = least > packet.reach_high[i] || most < packet.reach_low[i];
-            mask |= u16::from(!beyond && !straddles) << i;
-        }
-        mask
+            let beside = (0..2).any(|k| v.iter().all(|v| v[k][0] > 0.0) || v.iter().all(|v| v[k][1] < 0.0));
+            let beyond = v.iter().all(|v| v[2][0] > packet.reach[1]) || v.iter().all(|v| v[2][1] < packet.reach[0]);
+            let used = block.ids[lane] != NO_HIT;
+            mask | u32::from(used && !beside && !beyond) << lane
+        })
     }
 
     #[inline(always)]
-    fn extremes(self, x: &ByRay) -> [f32; 2] {
-        x.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[least, greatest], x| [min(*x, least), max(*x, greatest)])
+    fn zeros(self) -> Plain {
+        Plain([0.0; PACKET])
+    }
+
+    #[inline(always)]
+    fn components(self, rays: &[Ray; PACKET]) -> [Plain; 8] {
+        let of = |get: fn(&Ray) -> f32| Plain(rays.each_ref().map(get));
+        [
+            of(|ray| ray.origin.x),
+            of(|ray| ray.origin.y),
+            of(|ray| ray.origin.z),
+            of(|ray| ray.t_min),
+            of(|ray| ray.dir.x),
+            of(|ray| ray.dir.y),
+            of(|ray| ray.dir.z),
+            of(|ray| ray.t_max),
+        ]
     }
 
     #[inline(always)]
