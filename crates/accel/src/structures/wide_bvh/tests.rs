@@ -74,8 +74,8 @@ fn trees_hold_what_they_are_built_over_on_any_number_of_threads() {
         let primitives = scene(7, count, 1.0);
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let tree = pool.install(|| binary::build(&primitives));
-            emit::collapse(&tree, &primitives, Leaves::Blocks).unwrap()
+            let tree = pool.install(|| binary::build(&primitives, Leaves::Blocks));
+            emit::collapse(&tree, &primitives).unwrap()
         };
         let one = run(1);
         for threads in [2, 7] {

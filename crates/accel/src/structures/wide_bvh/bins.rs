@@ -1,0 +1,238 @@
+//! The split of some primitives: binned centroids along all three axes at once, by Wald, "On Fast Construction of
+//! SAH-based Bounding Volume Hierarchies" (2007).
+
+use super::layout::WIDTH;
+use photinus_geometry::{Aabb, Mat4, Vec4};
+
+/// A primitive to be placed: its padded bounds and, in the fourth lane of the lower corner, the bits of its id.
+#[derive(Clone, Copy, Debug)]
+pub struct BuildPrim {
+    low: Vec4,
+    high: Vec4,
+}
+
+impl BuildPrim {
+    /// The primitive `id` of these padded bounds.
+    pub fn new(bounds: &Aabb, id: u32) -> Self {
+        // One added to whatever number the id's bits are is none of the small ones that take many cycles.
+        Self { low: bounds.min.extend(f32::from_bits(id)), high: bounds.max.extend(1.0) }
+    }
+
+    /// Primitive id.
+    pub fn id(&self) -> u32 {
+        self.low.w.to_bits()
+    }
+
+    /// Twice the middle of the bounds.
+    fn centroid(&self) -> Vec4 {
+        self.low + self.high
+    }
+}
+
+/// A box in vector registers; the fourth lane means nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct WideBox {
+    min: Vec4,
+    max: Vec4,
+}
+
+impl WideBox {
+    /// The identity of [`WideBox::union`].
+    const EMPTY: Self = Self { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY };
+
+    fn with(self, low: Vec4, high: Vec4) -> Self {
+        Self { min: low.min(self.min), max: high.max(self.max) }
+    }
+
+    fn union(self, other: Self) -> Self {
+        self.with(other.min, other.max)
+    }
+
+    /// The box as others know it.
+    pub fn aabb(&self) -> Aabb {
+        Aabb { min: self.min.truncate(), max: self.max.truncate() }
+    }
+}
+
+/// Bounds of some primitives, and twice the bounds of their centroids.
+#[derive(Clone, Copy, Debug)]
+pub struct Extents {
+    /// Of the primitives.
+    pub bounds: WideBox,
+    centroids: WideBox,
+}
+
+impl Extents {
+    /// Of no primitives.
+    pub const EMPTY: Self = Self { bounds: WideBox::EMPTY, centroids: WideBox::EMPTY };
+
+    /// Of these.
+    pub fn of(prims: &[BuildPrim]) -> Self {
+        prims.iter().fold(Self::EMPTY, |e, p| Self {
+            bounds: e.bounds.with(p.low, p.high),
+            centroids: e.centroids.with(p.centroid(), p.centroid()),
+        })
+    }
+
+    /// Of both.
+    pub fn union(self, other: Self) -> Self {
+        Self { bounds: self.bounds.union(other.bounds), centroids: self.centroids.union(other.centroids) }
+    }
+}
+
+/// Added to a small number it leaves its integer in the lowest bits, after rounding to the nearest: bins lie
+/// around whole numbers, the first and the last of half the width.
+const TO_INTEGER: f32 = 12_582_912.0;
+
+/// Maps centroids to bins.
+struct Binning<const BINS: usize> {
+    origin: Vec4,
+    scale: Vec4,
+}
+
+impl<const BINS: usize> Binning<BINS> {
+    fn new(centroids: &WideBox) -> Self {
+        // Along axes on which there is nothing to divide everything falls into the first bin.
+        let size = centroids.max - centroids.min;
+        let divides = size.cmpgt(Vec4::ZERO) & size.cmplt(Vec4::INFINITY);
+        let scale = Vec4::splat((BINS - 1) as f32) / Vec4::select(divides, size, Vec4::INFINITY);
+        Self { origin: Vec4::select(divides, centroids.min, Vec4::ZERO), scale }
+    }
+
+    /// The bins of a primitive by axis.
+    fn bins(&self, prim: &BuildPrim) -> [usize; 3] {
+        let [x, y, z, _] = ((prim.centroid() - self.origin) * self.scale + Vec4::splat(TO_INTEGER)).to_array();
+        [x, y, z].map(|x| x.to_bits() as usize % BINS)
+    }
+
+    /// The bin of a primitive along one axis: what `bins` says there.
+    fn bin(&self, prim: &BuildPrim, axis: usize) -> usize {
+        let centroid = prim.low[axis] + prim.high[axis];
+        ((centroid - self.origin[axis]) * self.scale[axis] + TO_INTEGER).to_bits() as usize % BINS
+    }
+}
+
+/// Reorders the primitives by the cheapest split and returns the size of the first part; `None` where no bin border
+/// divides them. Few primitives need few bins.
+pub fn split(prims: &mut [BuildPrim], extents: &Extents, scale: f32) -> Option<usize> {
+    match prims.len() {
+        ..=WIDTH => split_into::<4>(prims, extents, scale),
+        ..64 => split_into::<8>(prims, extents, scale),
+        _ => split_into::<16>(prims, extents, scale),
+    }
+}
+
+fn split_into<const BINS: usize>(prims: &mut [BuildPrim], extents: &Extents, scale: f32) -> Option<usize> {
+    let binning = Binning::<BINS>::new(&extents.centroids);
+    let (axis, border) = Bins::<BINS>::of(prims, &binning).cheapest_border(scale)?;
+    Some(partition(prims, |p| binning.bin(p, axis) < border))
+}
+
+/// What lies in the bins of each axis.
+struct Bins<const BINS: usize> {
+    boxes: [[WideBox; BINS]; 3],
+    counts: [[u32; 4]; BINS],
+}
+
+impl<const BINS: usize> Bins<BINS> {
+    const EMPTY: Self = Self { boxes: [[WideBox::EMPTY; BINS]; 3], counts: [[0; 4]; BINS] };
+
+    fn of(prims: &[BuildPrim], binning: &Binning<BINS>) -> Self {
+        let mut bins = Self::EMPTY;
+        if BINS < 16 {
+            prims.iter().for_each(|p| bins.add(p, binning));
+            return bins;
+        }
+        // Neighbours often fall into the same bin, where one would wait for the other: every second goes elsewhere.
+        let mut others = Self::EMPTY;
+        let mut pairs = prims.chunks_exact(2);
+        for pair in &mut pairs {
+            bins.add(&pair[0], binning);
+            others.add(&pair[1], binning);
+        }
+        pairs.remainder().iter().for_each(|p| bins.add(p, binning));
+        bins.merge(&others);
+        bins
+    }
+
+    #[inline(always)]
+    fn add(&mut self, p: &BuildPrim, binning: &Binning<BINS>) {
+        for (axis, i) in binning.bins(p).into_iter().enumerate() {
+            self.boxes[axis][i] = self.boxes[axis][i].with(p.low, p.high);
+            self.counts[i][axis] += 1;
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for axis in 0..3 {
+            for i in 0..BINS {
+                self.boxes[axis][i] = self.boxes[axis][i].union(other.boxes[axis][i]);
+                self.counts[i][axis] += other.counts[i][axis];
+            }
+        }
+    }
+
+    /// The boxes of the three axes' bin `i`.
+    fn at(&self, i: usize) -> [WideBox; 3] {
+        [self.boxes[0][i], self.boxes[1][i], self.boxes[2][i]]
+    }
+
+    /// How many are in the three axes' bin `i`.
+    fn count(&self, i: usize) -> Vec4 {
+        let [x, y, z, _] = self.counts[i];
+        Vec4::new(x as f32, y as f32, z as f32, 0.0)
+    }
+
+    /// Axis and first bin on the right of the cheapest split; `None` where none is finite. One that leaves a side empty
+    /// is not: there nothing is multiplied with infinity.
+    fn cheapest_border(&self, scale: f32) -> Option<(usize, usize)> {
+        let mut right_costs = [Vec4::ZERO; BINS];
+        let (mut boxes, mut count) = ([WideBox::EMPTY; 3], Vec4::ZERO);
+        for i in (1..BINS).rev() {
+            boxes = unions(boxes, self.at(i));
+            count += self.count(i);
+            right_costs[i] = half_areas(&boxes, scale) * count;
+        }
+        let (mut boxes, mut count) = ([WideBox::EMPTY; 3], Vec4::ZERO);
+        let (mut least, mut borders) = (Vec4::INFINITY, Vec4::ZERO);
+        for i in 1..BINS {
+            boxes = unions(boxes, self.at(i - 1));
+            count += self.count(i - 1);
+            let costs = half_areas(&boxes, scale) * count + right_costs[i];
+            let is_less = costs.cmplt(least);
+            least = Vec4::select(is_less, costs, least);
+            borders = Vec4::select(is_less, Vec4::splat(i as f32), borders);
+        }
+        let mut best = (f32::INFINITY, None);
+        for axis in 0..3 {
+            if least[axis] < best.0 {
+                best = (least[axis], Some((axis, borders[axis] as usize)));
+            }
+        }
+        best.1
+    }
+}
+
+fn unions(a: [WideBox; 3], b: [WideBox; 3]) -> [WideBox; 3] {
+    std::array::from_fn(|axis| a[axis].union(b[axis]))
+}
+
+/// Half the surface areas of three boxes in scaled units; infinite for the empty box.
+fn half_areas(boxes: &[WideBox; 3], scale: f32) -> Vec4 {
+    let [a, b, c] = boxes.map(|b| (b.max - b.min) * scale);
+    let columns = Mat4::from_cols(a, b, c, Vec4::ZERO).transpose();
+    let [x, y, z] = [columns.x_axis, columns.y_axis, columns.z_axis];
+    x * (y + z) + y * z
+}
+
+/// Moves the primitives for which `is_left` holds to the front and returns how many they are. Without a branch that
+/// depends on the answers: half of them would be guessed wrong.
+fn partition(prims: &mut [BuildPrim], is_left: impl Fn(&BuildPrim) -> bool) -> usize {
+    let mut left = 0;
+    for i in 0..prims.len() {
+        let goes_left = is_left(&prims[i]);
+        prims.swap(i, left);
+        left += usize::from(goes_left);
+    }
+    left
+}
