@@ -24,21 +24,55 @@ pub struct BinaryNode {
     pub first: u32,
     /// How many.
     pub count: u32,
-    /// How much further on the second child is; the first child comes next. 0 in leaves.
-    pub second: u32,
+    /// How much further on the second child is, in nodes or, of a node that is a piece by itself, in pieces; the first
+    /// child comes next. 0 in leaves.
+    second: u32,
     /// What is best done with the subtree.
     pub plan: Plan,
 }
 
+/// Where a node is.
+#[derive(Clone, Copy, Default)]
+pub struct Place {
+    piece: u32,
+    index: u32,
+}
+
 /// A binary tree down to what is best left a leaf.
 pub struct BinaryTree {
-    /// The nodes, each followed by its first child's subtree and then its second child's; none where there is no
-    /// primitive.
-    pub nodes: Vec<BinaryNode>,
+    /// The nodes, each followed by its first child's subtree and then its second child's, in pieces: subtrees built by
+    /// one thread, and each node above them. None where there is no primitive.
+    pieces: Vec<Vec<BinaryNode>>,
     /// Primitives in the order of the tree.
     pub prims: Vec<BuildPrim>,
     /// How leaves are stored.
     pub leaves: Leaves,
+}
+
+impl BinaryTree {
+    /// Whether there is no primitive.
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    /// The node at a place, of which the root's is the default.
+    #[inline]
+    pub fn node(&self, place: Place) -> &BinaryNode {
+        &self.pieces[place.piece as usize][place.index as usize]
+    }
+
+    /// The children of an interior node.
+    #[inline]
+    pub fn children(&self, place: Place) -> [Place; 2] {
+        let Place { piece, index } = place;
+        let node = self.node(place);
+        let steps = [1, node.second];
+        if node.count as usize >= PARALLEL_PRIMS {
+            steps.map(|step| Place { piece: piece + step, index: 0 })
+        } else {
+            steps.map(|step| Place { piece, index: index + step })
+        }
+    }
 }
 
 /// Half the surface area in scaled units.
@@ -56,7 +90,9 @@ fn gather(primitives: &Primitives) -> Vec<BuildPrim> {
     };
     // A list of known length is written in place; most scenes have nothing to be taken out of it.
     let mut prims: Vec<_> = (0..primitives.len()).into_par_iter().with_min_len(1024).map(prim).collect();
-    prims.retain(|prim| prim.id() != u32::MAX);
+    if prims.par_iter().with_min_len(1024).any(|prim| prim.id() == u32::MAX) {
+        prims.retain(|prim| prim.id() != u32::MAX);
+    }
     prims
 }
 
@@ -68,15 +104,8 @@ pub fn build(primitives: &Primitives, leaves: Leaves) -> BinaryTree {
     // Lengths are multiplied with it before areas are taken, so that no scene is too small or too large for them.
     let scale = if size > 0.0 && size.is_finite() { (1.0 / size).min(f32::MAX) } else { 1.0 };
     let builder = Builder { scale, leaves, triangle_count: primitives.triangle_count() as u32 };
-    let nodes = if prims.is_empty() { Vec::new() } else { builder.large(&mut prims, 0, 0, &extents).nodes.concat() };
-    BinaryTree { nodes, prims, leaves }
-}
-
-/// A finished subtree in pieces, which stand one after the other.
-struct Pieces {
-    nodes: Vec<Vec<BinaryNode>>,
-    count: usize,
-    costs: Costs,
+    let pieces = if prims.is_empty() { Vec::new() } else { builder.large(&mut prims, 0, 0, &extents).0 };
+    BinaryTree { pieces, prims, leaves }
 }
 
 /// What is the same for all subtrees.
@@ -87,27 +116,26 @@ struct Builder {
 }
 
 impl Builder {
-    /// Builds a subtree on all threads.
-    fn large(&self, prims: &mut [BuildPrim], first: u32, depth: u32, extents: &Extents) -> Pieces {
+    /// Builds a subtree on all threads: its pieces and costs.
+    fn large(&self, prims: &mut [BuildPrim], first: u32, depth: u32, extents: &Extents) -> (Vec<Vec<BinaryNode>>, Costs) {
         if prims.len() < PARALLEL_PRIMS {
             let mut nodes = Vec::with_capacity(prims.len() / 2);
             let costs = self.small(prims, first, depth, extents, &mut nodes);
-            return Pieces { count: nodes.len(), nodes: vec![nodes], costs };
+            return (vec![nodes], costs);
         }
-        let left_count = self.split(prims, depth, extents);
+        let count = prims.len() as u32;
+        let left_count = self.split(prims, depth, extents, f32::INFINITY).unwrap_or(prims.len() / 2);
         let (left, right) = prims.split_at_mut(left_count);
         let right_first = first + left_count as u32;
-        let (mut a, b) = rayon::join(
+        let (a, b) = rayon::join(
             || self.large(left, first, depth + 1, &Extents::of(left)),
             || self.large(right, right_first, depth + 1, &Extents::of(right)),
         );
         let bounds = extents.bounds.aabb();
         let area = scaled_half_area(&bounds, self.scale);
-        let (costs, plan) = plan(area, f32::INFINITY, &a.costs, &b.costs);
-        let count = prims.len() as u32;
-        a.nodes.insert(0, vec![BinaryNode { bounds, first, count, second: 1 + a.count as u32, plan }]);
-        a.nodes.extend(b.nodes);
-        Pieces { nodes: a.nodes, count: 1 + a.count + b.count, costs }
+        let (costs, plan) = plan(area, f32::INFINITY, &a.1, &b.1);
+        let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
+        ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
     }
 
     /// Appends a subtree to `nodes` and returns its costs.
@@ -127,14 +155,14 @@ impl Builder {
         if prims.len() == 1 {
             return [leaf; WIDTH];
         }
-        let left_count = self.split(prims, depth, extents);
+        let left_count = match self.split(prims, depth, extents, leaf) {
+            Some(count) => count,
+            // Finer splits seldom pay where the cheapest one does not: that costs less than a thousandth.
+            None if leaf < f32::INFINITY => return [leaf; WIDTH],
+            None => prims.len() / 2,
+        };
         let (left, right) = prims.split_at_mut(left_count);
         let (a, b) = (Extents::of(left), Extents::of(right));
-        let areas = scaled_half_area(&a.bounds.aabb(), self.scale) + scaled_half_area(&b.bounds.aabb(), self.scale);
-        // Finer splits seldom pay where the best one does not: two in a thousand blocks, and no cost that shows.
-        if leaf <= areas {
-            return [leaf; WIDTH];
-        }
         let a = self.small(left, first, depth + 1, &a, nodes);
         nodes[index].second = (nodes.len() - index) as u32;
         let b = self.small(right, first + left_count as u32, depth + 1, &b, nodes);
@@ -143,10 +171,11 @@ impl Builder {
         costs
     }
 
-    /// Reorders the primitives, more than one, and returns the size of the first part.
-    fn split(&self, prims: &mut [BuildPrim], depth: u32, extents: &Extents) -> usize {
-        let by_cost = if depth < MAX_SAH_DEPTH { split(prims, extents, self.scale) } else { None };
-        by_cost.filter(|left| (1..prims.len()).contains(left)).unwrap_or(prims.len() / 2)
+    /// Reorders the primitives, more than one, by the cheapest split and returns the size of the first part; `None` where
+    /// there is no split that pays.
+    fn split(&self, prims: &mut [BuildPrim], depth: u32, extents: &Extents, leaf: f32) -> Option<usize> {
+        let by_cost = if depth < MAX_SAH_DEPTH { split(prims, extents, self.scale, leaf) } else { None };
+        by_cost.filter(|left| (1..prims.len()).contains(left))
     }
 
     /// Cost of a leaf of these primitives; infinite where they make none. Mixed ones do not.

@@ -85,6 +85,7 @@ impl Extents {
 const TO_INTEGER: f32 = 12_582_912.0;
 
 /// Maps centroids to bins.
+#[derive(Clone, Copy)]
 struct Binning<const BINS: usize> {
     origin: Vec4,
     scale: Vec4,
@@ -113,18 +114,19 @@ impl<const BINS: usize> Binning<BINS> {
 }
 
 /// Reorders the primitives by the cheapest split and returns the size of the first part; `None` where no bin border
-/// divides them. Few primitives need few bins.
-pub fn split(prims: &mut [BuildPrim], extents: &Extents, scale: f32) -> Option<usize> {
+/// divides them, or where half the areas of the parts, in scaled units, come to `most` or more. Few primitives need few
+/// bins.
+pub fn split(prims: &mut [BuildPrim], extents: &Extents, scale: f32, most: f32) -> Option<usize> {
     match prims.len() {
-        ..=WIDTH => split_into::<4>(prims, extents, scale),
-        ..64 => split_into::<8>(prims, extents, scale),
-        _ => split_into::<16>(prims, extents, scale),
+        ..=WIDTH => split_into::<4>(prims, extents, scale, most),
+        ..64 => split_into::<8>(prims, extents, scale, most),
+        _ => split_into::<16>(prims, extents, scale, most),
     }
 }
 
-fn split_into<const BINS: usize>(prims: &mut [BuildPrim], extents: &Extents, scale: f32) -> Option<usize> {
+fn split_into<const BINS: usize>(prims: &mut [BuildPrim], extents: &Extents, scale: f32, most: f32) -> Option<usize> {
     let binning = Binning::<BINS>::new(&extents.centroids);
-    let (axis, border) = Bins::<BINS>::of(prims, &binning).cheapest_border(scale)?;
+    let (axis, border) = Bins::of(prims, binning).cheapest_border(scale, most)?;
     Some(partition(prims, |p| binning.bin(p, axis) < border))
 }
 
@@ -137,20 +139,21 @@ struct Bins<const BINS: usize> {
 impl<const BINS: usize> Bins<BINS> {
     const EMPTY: Self = Self { boxes: [[WideBox::EMPTY; BINS]; 3], counts: [[0; 4]; BINS] };
 
-    fn of(prims: &[BuildPrim], binning: &Binning<BINS>) -> Self {
+    #[inline(always)]
+    fn of(prims: &[BuildPrim], binning: Binning<BINS>) -> Self {
         let mut bins = Self::EMPTY;
         if BINS < 16 {
-            prims.iter().for_each(|p| bins.add(p, binning));
+            prims.iter().for_each(|p| bins.add(p, &binning));
             return bins;
         }
         // Neighbours often fall into the same bin, where one would wait for the other: every second goes elsewhere.
         let mut others = Self::EMPTY;
         let mut pairs = prims.chunks_exact(2);
         for pair in &mut pairs {
-            bins.add(&pair[0], binning);
-            others.add(&pair[1], binning);
+            bins.add(&pair[0], &binning);
+            others.add(&pair[1], &binning);
         }
-        pairs.remainder().iter().for_each(|p| bins.add(p, binning));
+        pairs.remainder().iter().for_each(|p| bins.add(p, &binning));
         bins.merge(&others);
         bins
     }
@@ -183,33 +186,38 @@ impl<const BINS: usize> Bins<BINS> {
         Vec4::new(x as f32, y as f32, z as f32, 0.0)
     }
 
-    /// Axis and first bin on the right of the cheapest split; `None` where none is finite. One that leaves a side empty
-    /// is not: there nothing is multiplied with infinity.
-    fn cheapest_border(&self, scale: f32) -> Option<(usize, usize)> {
-        let mut right_costs = [Vec4::ZERO; BINS];
+    /// Axis and first bin on the right of the cheapest split; `None` where none is finite, or where the areas of its sides
+    /// come to `most` or more. One that leaves a side empty is not finite: there nothing is multiplied with infinity.
+    #[inline(always)]
+    fn cheapest_border(&self, scale: f32, most: f32) -> Option<(usize, usize)> {
+        let mut right = [(Vec4::ZERO, Vec4::ZERO); BINS];
         let (mut boxes, mut count) = ([WideBox::EMPTY; 3], Vec4::ZERO);
         for i in (1..BINS).rev() {
             boxes = unions(boxes, self.at(i));
             count += self.count(i);
-            right_costs[i] = half_areas(&boxes, scale) * count;
+            let areas = half_areas(&boxes, scale);
+            right[i] = (areas, areas * count);
         }
         let (mut boxes, mut count) = ([WideBox::EMPTY; 3], Vec4::ZERO);
-        let (mut least, mut borders) = (Vec4::INFINITY, Vec4::ZERO);
+        let (mut least, mut borders, mut both_areas) = (Vec4::INFINITY, Vec4::ZERO, Vec4::ZERO);
         for i in 1..BINS {
+            let (right_areas, right_costs) = right[i];
             boxes = unions(boxes, self.at(i - 1));
             count += self.count(i - 1);
-            let costs = half_areas(&boxes, scale) * count + right_costs[i];
+            let areas = half_areas(&boxes, scale);
+            let costs = areas * count + right_costs;
             let is_less = costs.cmplt(least);
             least = Vec4::select(is_less, costs, least);
             borders = Vec4::select(is_less, Vec4::splat(i as f32), borders);
+            both_areas = Vec4::select(is_less, areas + right_areas, both_areas);
         }
         let mut best = (f32::INFINITY, None);
         for axis in 0..3 {
             if least[axis] < best.0 {
-                best = (least[axis], Some((axis, borders[axis] as usize)));
+                best = (least[axis], Some(axis));
             }
         }
-        best.1
+        best.1.filter(|axis| both_areas[*axis] < most).map(|axis| (axis, borders[axis] as usize))
     }
 }
 

@@ -2,7 +2,7 @@
 //! dynamic programming (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 //! BVHs", HPG 2017, section 3.1).
 
-use super::binary::BinaryTree;
+use super::binary::{BinaryTree, Place};
 use super::layout::WIDTH;
 use arrayvec::ArrayVec;
 
@@ -83,37 +83,37 @@ pub fn plan(area: f32, leaf: f32, a: &Costs, b: &Costs) -> (Costs, Plan) {
 }
 
 /// The binary nodes that fill the slots of a node, and whether they are nodes of their own.
-pub type Slots = ArrayVec<(usize, bool), WIDTH>;
+pub type Slots = ArrayVec<(Place, bool), WIDTH>;
 
 impl BinaryTree {
-    /// What fills the slots of a subtree that is a node, in tree order. The root is a node even if it is best left a leaf.
-    pub fn slots(&self, index: usize) -> Slots {
+    /// What fills the slots of a subtree that is a node, in tree order; the root is one even if it is best left a leaf.
+    pub fn slots(&self, place: Place) -> Slots {
         let mut slots = Slots::new();
-        if self.nodes[index].plan.is_node() {
-            self.split(index, WIDTH, &mut slots);
+        if self.node(place).plan.is_node() {
+            self.split(place, WIDTH, &mut slots);
         } else {
-            slots.push((index, false));
+            slots.push((place, false));
         }
         slots
     }
 
-    fn split(&self, index: usize, slots: usize, out: &mut Slots) {
-        let node = &self.nodes[index];
-        let first_slots = node.plan.first_slots(slots);
-        self.fill(index + 1, first_slots, out);
-        self.fill(index + node.second as usize, slots - first_slots, out);
+    fn split(&self, place: Place, slots: usize, out: &mut Slots) {
+        let first_slots = self.node(place).plan.first_slots(slots);
+        let [a, b] = self.children(place);
+        self.fill(a, first_slots, out);
+        self.fill(b, slots - first_slots, out);
     }
 
     /// Appends the binary nodes that fill up to `slots` slots, in tree order.
-    fn fill(&self, index: usize, mut slots: usize, out: &mut Slots) {
-        let plan = self.nodes[index].plan;
+    fn fill(&self, place: Place, mut slots: usize, out: &mut Slots) {
+        let plan = self.node(place).plan;
         while slots > 1 && plan.first_slots(slots) == 0 {
             slots -= 1;
         }
         if slots > 1 {
-            self.split(index, slots, out);
+            self.split(place, slots, out);
         } else {
-            out.push((index, plan.is_node()));
+            out.push((place, plan.is_node()));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Writing the wide tree: which binary nodes stand in which slots first, then all nodes and all blocks of triangles, each
 //! once and in its place.
 
-use super::binary::{BinaryTree, PARALLEL_PRIMS};
+use super::binary::{BinaryNode, BinaryTree, PARALLEL_PRIMS, Place};
 use super::collapse::Leaves;
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
 use arrayvec::ArrayVec;
@@ -20,47 +20,47 @@ pub struct WideArrays {
     pub levels: u32,
 }
 
-/// Places in each of the arrays.
+/// Offsets in each of the arrays.
 #[derive(Clone, Copy, Default)]
-struct Places {
+struct Offsets {
     node: usize,
     block: usize,
     id: usize,
 }
 
-/// A node to be written: what fills its slots, and the places of the first child of each kind.
+/// A node to be written: what fills its slots, and the indices of the first child of each kind.
 #[derive(Clone, Copy)]
 struct Draft {
-    index: u32,
-    first: Places,
+    place: Place,
+    first: Offsets,
 }
 
 /// The nodes below a node, children of one side by side, and the leaves in the order of their slots.
 #[derive(Default)]
 struct Drafts {
     nodes: Vec<Draft>,
-    /// Binary nodes that become blocks.
-    blocks: Vec<u32>,
+    /// Where the primitives of blocks start, and how many they are.
+    blocks: Vec<(u32, u32)>,
     ids: Vec<u32>,
     levels: u32,
 }
 
 /// Collapses `tree`; `None` where an array outgrows its index.
 pub fn collapse(tree: &BinaryTree, primitives: &Primitives) -> Option<WideArrays> {
-    if tree.nodes.is_empty() {
+    if tree.is_empty() {
         let (nodes, blocks) = (vec![Node::empty()], vec![TriangleBlock::empty()]);
         return Some(WideArrays { nodes, blocks, ids: Vec::new(), levels: 1 });
     }
     let writer = Writer { tree, primitives };
-    let root = Draft { index: 0, first: Places { node: 1, block: 1, id: 0 } };
-    let mut drafts = Drafts { nodes: vec![root], blocks: vec![u32::MAX], ..Drafts::default() };
+    let root = Draft { place: Place::default(), first: Offsets { node: 1, block: 1, id: 0 } };
+    let mut drafts = Drafts { nodes: vec![root], blocks: vec![(0, 0)], ..Drafts::default() };
     writer.draft(0, 0, &mut drafts);
     if drafts.nodes.len().max(drafts.blocks.len()).max(drafts.ids.len()) >= MAX_INDEX {
         return None;
     }
     Some(WideArrays {
         nodes: drafts.nodes.par_iter().with_min_len(64).map(|draft| writer.node(draft)).collect(),
-        blocks: drafts.blocks.par_iter().with_min_len(64).map(|index| writer.block(*index)).collect(),
+        blocks: drafts.blocks.par_iter().with_min_len(64).map(|range| writer.block(*range)).collect(),
         ids: drafts.ids,
         levels: drafts.levels,
     })
@@ -73,38 +73,33 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// How the leaf at `index` is stored. No leaf is mixed.
-    fn leaf_kind(&self, index: usize) -> Leaves {
-        let id = self.tree.prims[self.tree.nodes[index].first as usize].id();
+    /// How a leaf is stored. None is mixed.
+    fn leaf_kind(&self, leaf: &BinaryNode) -> Leaves {
+        let id = self.tree.prims[leaf.first as usize].id();
         if (id as usize) < self.primitives.triangle_count() { self.tree.leaves } else { Leaves::Ids }
     }
 
-    /// Primitives of the leaf at `index`, ascending.
-    fn leaf_ids(&self, index: usize) -> ArrayVec<u32, WIDTH> {
-        let node = &self.tree.nodes[index];
-        let range = node.first as usize..(node.first + node.count) as usize;
-        let mut ids: ArrayVec<_, WIDTH> = self.tree.prims[range].iter().map(|p| p.id()).collect();
-        ids.sort_unstable();
-        ids
-    }
-
-    /// Drafts the node at `place` of `out`, a binary node, and everything below it.
-    fn draft(&self, place: usize, levels: u32, out: &mut Drafts) {
-        let index = out.nodes[place].index as usize;
-        out.nodes[place].first = out.places();
+    /// Drafts the node at `index` of `out`, which knows its place, and everything below it.
+    fn draft(&self, index: usize, levels: u32, out: &mut Drafts) {
+        let place = out.nodes[index].place;
+        out.nodes[index].first = out.offsets();
         out.levels = out.levels.max(levels + 1);
-        for (child, is_node) in self.tree.slots(index) {
+        for (child, is_node) in self.tree.slots(place) {
+            let node = self.tree.node(child);
             if is_node {
-                out.nodes.push(Draft { index: child as u32, first: Places::default() });
-            } else if self.leaf_kind(child) == Leaves::Ids {
-                out.ids.extend(self.leaf_ids(child));
+                out.nodes.push(Draft { place: child, first: Offsets::default() });
+            } else if self.leaf_kind(node) == Leaves::Ids {
+                let ids = out.ids.len();
+                let prims = &self.tree.prims[node.first as usize..(node.first + node.count) as usize];
+                out.ids.extend(prims.iter().map(|p| p.id()));
+                out.ids[ids..].sort_unstable();
             } else {
-                out.blocks.push(child as u32);
+                out.blocks.push((node.first, node.count));
             }
         }
-        let inner = out.nodes[place].first.node..out.nodes.len();
-        if (self.tree.nodes[index].count as usize) < PARALLEL_PRIMS {
-            inner.for_each(|place| self.draft(place, levels + 1, out));
+        let inner = out.nodes[index].first.node..out.nodes.len();
+        if (self.tree.node(place).count as usize) < PARALLEL_PRIMS {
+            inner.for_each(|index| self.draft(index, levels + 1, out));
             return;
         }
         let part = |child: &mut Draft| {
@@ -113,22 +108,22 @@ impl Writer<'_> {
             part
         };
         let parts: Vec<_> = out.nodes[inner.clone()].par_iter_mut().map(part).collect();
-        for (place, part) in inner.zip(parts) {
-            out.append(place, part);
+        for (index, part) in inner.zip(parts) {
+            out.append(index, part);
         }
     }
 
     fn node(&self, draft: &Draft) -> Node {
         let mut next = draft.first;
-        let slots = self.tree.slots(draft.index as usize);
+        let slots = self.tree.slots(draft.place);
         let children: ArrayVec<_, WIDTH> = slots
             .into_iter()
-            .map(|(index, is_node)| {
-                let node = &self.tree.nodes[index];
+            .map(|(place, is_node)| {
+                let node = self.tree.node(place);
                 let child = if is_node {
                     next.node += 1;
                     Child::node(next.node - 1)
-                } else if self.leaf_kind(index) == Leaves::Ids {
+                } else if self.leaf_kind(node) == Leaves::Ids {
                     next.id += node.count as usize;
                     Child::ids(next.id - node.count as usize, node.count as usize)
                 } else {
@@ -141,18 +136,21 @@ impl Writer<'_> {
         Node::new(&children)
     }
 
-    fn block(&self, index: u32) -> TriangleBlock {
+    fn block(&self, (first, count): (u32, u32)) -> TriangleBlock {
         let mut block = TriangleBlock::empty();
-        if index == u32::MAX {
-            return block;
+        let mut ids = [i32::MAX; WIDTH];
+        for (id, prim) in ids.iter_mut().zip(&self.tree.prims[first as usize..(first + count) as usize]) {
+            *id = prim.id() as i32;
         }
-        for (lane, &id) in self.leaf_ids(index as usize).iter().enumerate() {
-            for (v, p) in self.primitives.triangle(id as usize).iter().enumerate() {
+        for id in &ids[..count as usize] {
+            // The lane is the number of smaller ids: eight comparisons at once, where sorting would guess.
+            let lane = ids.iter().filter(|other| *other < id).count() % WIDTH;
+            for (v, p) in self.primitives.triangle(*id as usize).iter().enumerate() {
                 for axis in 0..3 {
                     block.vertices[3 * v + axis][lane] = p[axis];
                 }
             }
-            block.ids[lane] = id;
+            block.ids[lane] = *id as u32;
         }
         block
     }
@@ -160,16 +158,16 @@ impl Writer<'_> {
 
 impl Drafts {
     /// Where the next of each goes.
-    fn places(&self) -> Places {
-        Places { node: self.nodes.len(), block: self.blocks.len(), id: self.ids.len() }
+    fn offsets(&self) -> Offsets {
+        Offsets { node: self.nodes.len(), block: self.blocks.len(), id: self.ids.len() }
     }
 
-    /// Appends what was drafted by itself: its first node belongs to `place`.
-    fn append(&mut self, place: usize, part: Self) {
-        let mut base = self.places();
+    /// Appends what was drafted by itself: its first node belongs to `index`.
+    fn append(&mut self, index: usize, part: Self) {
+        let mut base = self.offsets();
         base.node -= 1;
-        let moved = |draft: &Draft| Draft { index: draft.index, first: draft.first.plus(base) };
-        self.nodes[place] = moved(&part.nodes[0]);
+        let moved = |draft: &Draft| Draft { place: draft.place, first: draft.first.plus(base) };
+        self.nodes[index] = moved(&part.nodes[0]);
         self.nodes.extend(part.nodes[1..].iter().map(moved));
         self.blocks.extend(part.blocks);
         self.ids.extend(part.ids);
@@ -177,7 +175,7 @@ impl Drafts {
     }
 }
 
-impl Places {
+impl Offsets {
     fn plus(self, other: Self) -> Self {
         Self { node: self.node + other.node, block: self.block + other.block, id: self.id + other.id }
     }
