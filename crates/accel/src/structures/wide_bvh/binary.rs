@@ -55,6 +55,11 @@ impl BinaryTree {
         self.pieces.is_empty()
     }
 
+    /// Bounds of everything; empty where there is nothing.
+    pub fn bounds(&self) -> Aabb {
+        if self.is_empty() { Aabb::EMPTY } else { self.node(Place::default()).bounds }
+    }
+
     /// The node at a place, of which the root's is the default.
     #[inline]
     pub fn node(&self, place: Place) -> &BinaryNode {
@@ -117,7 +122,13 @@ struct Builder {
 
 impl Builder {
     /// Builds a subtree on all threads: its pieces and costs.
-    fn large(&self, prims: &mut [BuildPrim], first: u32, depth: u32, extents: &Extents) -> (Vec<Vec<BinaryNode>>, Costs) {
+    fn large(
+        &self,
+        prims: &mut [BuildPrim],
+        first: u32,
+        depth: u32,
+        extents: &Extents,
+    ) -> (Vec<Vec<BinaryNode>>, Costs) {
         if prims.len() < PARALLEL_PRIMS {
             let mut nodes = Vec::with_capacity(prims.len() / 2);
             let costs = self.small(prims, first, depth, extents, &mut nodes);

@@ -23,7 +23,7 @@ impl BuildPrim {
         self.low.w.to_bits()
     }
 
-    /// Twice the middle of the bounds.
+    /// Twice the middle of the bounds; infinite beyond half of the greatest number, where an axis divides nothing.
     fn centroid(&self) -> Vec4 {
         self.low + self.high
     }
@@ -66,12 +66,17 @@ impl Extents {
     /// Of no primitives.
     pub const EMPTY: Self = Self { bounds: WideBox::EMPTY, centroids: WideBox::EMPTY };
 
-    /// Of these.
+    /// Of these: every second apart, since a minimum waits for the one before it.
     pub fn of(prims: &[BuildPrim]) -> Self {
-        prims.iter().fold(Self::EMPTY, |e, p| Self {
-            bounds: e.bounds.with(p.low, p.high),
-            centroids: e.centroids.with(p.centroid(), p.centroid()),
-        })
+        let mut pairs = prims.chunks_exact(2);
+        let both = [Self::EMPTY; 2];
+        let [a, b] = (&mut pairs).fold(both, |[a, b], pair| [a.with(&pair[0]), b.with(&pair[1])]);
+        pairs.remainder().iter().fold(a.union(b), Self::with)
+    }
+
+    fn with(self, p: &BuildPrim) -> Self {
+        let centroid = p.centroid();
+        Self { bounds: self.bounds.with(p.low, p.high), centroids: self.centroids.with(centroid, centroid) }
     }
 
     /// Of both.
@@ -79,6 +84,9 @@ impl Extents {
         Self { bounds: self.bounds.union(other.bounds), centroids: self.centroids.union(other.centroids) }
     }
 }
+
+/// From so many primitives on it pays to bin every second one apart.
+const PAIRED: usize = 32;
 
 /// Added to a small number it leaves its integer in the lowest bits, after rounding to the nearest: bins lie
 /// around whole numbers, the first and the last of half the width.
@@ -117,9 +125,10 @@ impl<const BINS: usize> Binning<BINS> {
 /// divides them, or where half the areas of the parts, in scaled units, come to `most` or more. Few primitives need few
 /// bins.
 pub fn split(prims: &mut [BuildPrim], extents: &Extents, scale: f32, most: f32) -> Option<usize> {
+    const FEW: usize = WIDTH + 1;
     match prims.len() {
-        ..=WIDTH => split_into::<4>(prims, extents, scale, most),
-        ..64 => split_into::<8>(prims, extents, scale, most),
+        0..=WIDTH => split_into::<4>(prims, extents, scale, most),
+        FEW..64 => split_into::<8>(prims, extents, scale, most),
         _ => split_into::<16>(prims, extents, scale, most),
     }
 }
@@ -142,7 +151,7 @@ impl<const BINS: usize> Bins<BINS> {
     #[inline(always)]
     fn of(prims: &[BuildPrim], binning: Binning<BINS>) -> Self {
         let mut bins = Self::EMPTY;
-        if BINS < 16 {
+        if prims.len() < PAIRED {
             prims.iter().for_each(|p| bins.add(p, &binning));
             return bins;
         }

@@ -166,9 +166,11 @@ impl Drafts {
     fn append(&mut self, index: usize, part: Self) {
         let mut base = self.offsets();
         base.node -= 1;
-        let moved = |draft: &Draft| Draft { place: draft.place, first: draft.first.plus(base) };
-        self.nodes[index] = moved(&part.nodes[0]);
-        self.nodes.extend(part.nodes[1..].iter().map(moved));
+        let mut moved = part.nodes.into_iter().map(|draft| Draft { first: draft.first.plus(base), ..draft });
+        if let Some(node) = moved.next() {
+            self.nodes[index] = node;
+        }
+        self.nodes.extend(moved);
         self.blocks.extend(part.blocks);
         self.ids.extend(part.ids);
         self.levels = self.levels.max(part.levels);

@@ -57,7 +57,7 @@ impl WideBvh {
         let tester = if fused { sphere_tester(primitives) } else { leaf_tester(primitives, options)? };
         let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
         let tree = binary::build(primitives, leaves);
-        let bounds = tree.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds);
+        let bounds = tree.bounds();
         let arrays =
             emit::collapse(&tree, primitives).ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
         Ok(Self {
