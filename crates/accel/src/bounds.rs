@@ -36,12 +36,15 @@ pub(crate) fn half_area_f64([x, y, z]: [f64; 3]) -> f64 {
 
 /// The padded bounds of primitive `id`; `None` where no ray can hit it (no area, no radius, not finite).
 pub fn padded_bounds(primitives: &Primitives, id: usize) -> Option<Aabb> {
-    let hittable = match id.checked_sub(primitives.triangle_count()) {
-        None => !is_degenerate(&primitives.triangle(id).map(|v| v.to_array())),
+    let (is_hittable, bounds) = match id.checked_sub(primitives.triangle_count()) {
+        None => {
+            let triangle = primitives.triangle(id);
+            (!is_degenerate(&triangle.map(|v| v.to_array())), Aabb::around(triangle))
+        }
         Some(j) => {
             let s = &primitives.spheres[j];
-            s.radius > 0.0 && s.radius.is_finite() && s.center.is_finite()
+            (s.radius > 0.0 && s.radius.is_finite() && s.center.is_finite(), primitives.bounds_of(id))
         }
     };
-    hittable.then(|| pad(primitives.bounds_of(id)))
+    is_hittable.then(|| pad(bounds))
 }

@@ -1,58 +1,19 @@
-//! A binary tree by the surface-area heuristic over binned centroids: Wald, "On Fast Construction of SAH-based
-//! Bounding Volume Hierarchies" (2007), in parallel.
+//! A binary tree by the surface-area heuristic, in parallel, planned from the bottom up while it is built.
 //!
-//! Minima, maxima and counts of bins do not depend on the order in which they are gathered, and every subtree knows
-//! its place beforehand, so the tree is the same on any number of threads.
+//! Minima, maxima and counts of bins do not depend on the order in which they are gathered, and the order of the
+//! pieces does not depend on who builds them, so the tree is the same on any number of threads.
 
+use super::bins::{BuildPrim, Extents, split};
+use super::collapse::{BLOCK_COST, Costs, ID_COST, Leaves, Plan, plan};
+use super::layout::{MAX_IDS, WIDTH};
 use crate::bounds::padded_bounds;
-use photinus_geometry::{Aabb, Primitives, Vec4};
+use photinus_geometry::{Aabb, Primitives};
 use rayon::prelude::*;
 
 /// Subtrees of fewer primitives are left to one thread.
 pub const PARALLEL_PRIMS: usize = 4096;
 /// Below this depth nodes are halved by count, which takes 30 levels at most: no tree is deeper than 78.
 const MAX_SAH_DEPTH: u32 = 48;
-
-/// A primitive to be placed.
-#[derive(Clone, Copy, Debug)]
-pub struct BuildPrim {
-    /// Padded bounds.
-    bounds: WideBox,
-    /// Primitive id.
-    pub id: u32,
-}
-
-/// A box in vector registers; the fourth lane is zero.
-#[derive(Clone, Copy, Debug)]
-struct WideBox {
-    min: Vec4,
-    max: Vec4,
-}
-
-impl WideBox {
-    const EMPTY: Self = Self { min: Vec4::INFINITY, max: Vec4::NEG_INFINITY };
-
-    fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
-    fn with_point(self, p: Vec4) -> Self {
-        Self { min: self.min.min(p), max: self.max.max(p) }
-    }
-
-    fn centroid(&self) -> Vec4 {
-        self.min * 0.5 + self.max * 0.5
-    }
-
-    /// Half the surface area in scaled units.
-    fn scaled_half_area(&self, scale: f32) -> f32 {
-        scaled_half_area(&self.aabb(), scale)
-    }
-
-    fn aabb(&self) -> Aabb {
-        Aabb { min: self.min.truncate(), max: self.max.truncate() }
-    }
-}
 
 /// A node over `count` consecutive primitives from `first`.
 #[derive(Clone, Copy, Debug)]
@@ -63,19 +24,60 @@ pub struct BinaryNode {
     pub first: u32,
     /// How many.
     pub count: u32,
-    /// Primitives of the first child; the second holds the rest. 0 in leaves, which hold one primitive.
-    pub left_count: u32,
+    /// How much further on the second child is, in nodes or, of a node that is a piece by itself, in pieces; the first
+    /// child comes next. 0 in leaves.
+    second: u32,
+    /// What is best done with the subtree.
+    pub plan: Plan,
 }
 
-/// A binary tree down to single primitives. The subtree of n primitives at index i takes the 2n - 1 places from i:
-/// the node, its first child's subtree, its second child's.
+/// Where a node is.
+#[derive(Clone, Copy, Default)]
+pub struct Place {
+    piece: u32,
+    index: u32,
+}
+
+/// A binary tree down to what is best left a leaf.
 pub struct BinaryTree {
-    /// The nodes; none where there is no primitive.
-    pub nodes: Vec<BinaryNode>,
+    /// The nodes, each followed by its first child's subtree and then its second child's, in pieces: subtrees built by
+    /// one thread, and each node above them. None where there is no primitive.
+    pieces: Vec<Vec<BinaryNode>>,
     /// Primitives in the order of the tree.
     pub prims: Vec<BuildPrim>,
-    /// What lengths are multiplied with before areas are taken, so that no scene is too small or too large for them.
-    pub scale: f32,
+    /// How leaves are stored.
+    pub leaves: Leaves,
+}
+
+impl BinaryTree {
+    /// Whether there is no primitive.
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    /// Bounds of everything; empty where there is nothing.
+    pub fn bounds(&self) -> Aabb {
+        if self.is_empty() { Aabb::EMPTY } else { self.node(Place::default()).bounds }
+    }
+
+    /// The node at a place, of which the root's is the default.
+    #[inline]
+    pub fn node(&self, place: Place) -> &BinaryNode {
+        &self.pieces[place.piece as usize][place.index as usize]
+    }
+
+    /// The children of an interior node.
+    #[inline]
+    pub fn children(&self, place: Place) -> [Place; 2] {
+        let Place { piece, index } = place;
+        let node = self.node(place);
+        let steps = [1, node.second];
+        if node.count as usize >= PARALLEL_PRIMS {
+            steps.map(|step| Place { piece: piece + step, index: 0 })
+        } else {
+            steps.map(|step| Place { piece, index: index + step })
+        }
+    }
 }
 
 /// Half the surface area in scaled units.
@@ -85,167 +87,119 @@ pub fn scaled_half_area(b: &Aabb, scale: f32) -> f32 {
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
-impl BinaryTree {
-    /// The children of an interior node.
-    pub fn children(&self, index: usize) -> [usize; 2] {
-        [index + 1, index + 2 * self.nodes[index].left_count as usize]
-    }
-}
-
 /// The hittable primitives with their padded bounds, by id.
 fn gather(primitives: &Primitives) -> Vec<BuildPrim> {
-    const NONE: BuildPrim = BuildPrim { bounds: WideBox::EMPTY, id: u32::MAX };
     let prim = |id: usize| match padded_bounds(primitives, id) {
-        Some(b) => BuildPrim { bounds: WideBox { min: b.min.extend(0.0), max: b.max.extend(0.0) }, id: id as u32 },
-        None => NONE,
+        Some(b) => BuildPrim::new(&b, id as u32),
+        None => BuildPrim::new(&Aabb::EMPTY, u32::MAX),
     };
     // A list of known length is written in place; most scenes have nothing to be taken out of it.
     let mut prims: Vec<_> = (0..primitives.len()).into_par_iter().with_min_len(1024).map(prim).collect();
-    prims.retain(|prim| prim.id != NONE.id);
+    if prims.par_iter().with_min_len(1024).any(|prim| prim.id() == u32::MAX) {
+        prims.retain(|prim| prim.id() != u32::MAX);
+    }
     prims
 }
 
-/// Builds the tree.
-pub fn build(primitives: &Primitives) -> BinaryTree {
+/// Builds the tree for these leaves.
+pub fn build(primitives: &Primitives, leaves: Leaves) -> BinaryTree {
     let mut prims = gather(primitives);
-    let leaf = BinaryNode { bounds: Aabb::EMPTY, first: 0, count: 0, left_count: 0 };
-    let mut nodes = vec![leaf; (2 * prims.len()).saturating_sub(1)];
-    let size = extents(&prims).0.aabb().size().max_element();
+    let extents = prims.par_chunks(PARALLEL_PRIMS).map(Extents::of).reduce(|| Extents::EMPTY, Extents::union);
+    let size = extents.bounds.aabb().size().max_element();
+    // Lengths are multiplied with it before areas are taken, so that no scene is too small or too large for them.
     let scale = if size > 0.0 && size.is_finite() { (1.0 / size).min(f32::MAX) } else { 1.0 };
-    if !prims.is_empty() {
-        subtree(&mut prims, 0, &mut nodes, 0, scale);
-    }
-    BinaryTree { nodes, prims, scale }
+    let builder = Builder { scale, leaves, triangle_count: primitives.triangle_count() as u32 };
+    let pieces = if prims.is_empty() { Vec::new() } else { builder.large(&mut prims, 0, 0, &extents).0 };
+    BinaryTree { pieces, prims, leaves }
 }
 
-fn subtree(prims: &mut [BuildPrim], first: u32, nodes: &mut [BinaryNode], depth: u32, scale: f32) {
-    let count = prims.len();
-    let (bounds, centroids) = extents(prims);
-    let mut node = BinaryNode { bounds: bounds.aabb(), first, count: count as u32, left_count: 0 };
-    if count == 1 {
-        nodes[0] = node;
-        return;
-    }
-    let by_cost = if count > 2 && depth < MAX_SAH_DEPTH { split(prims, &centroids, scale) } else { None };
-    let left_count = by_cost.unwrap_or(count / 2);
-    node.left_count = left_count as u32;
-    nodes[0] = node;
-    let (left_prims, right_prims) = prims.split_at_mut(left_count);
-    let (left_nodes, right_nodes) = nodes[1..].split_at_mut(2 * left_count - 1);
-    let right_first = first + left_count as u32;
-    if count >= PARALLEL_PRIMS {
-        rayon::join(
-            || subtree(left_prims, first, left_nodes, depth + 1, scale),
-            || subtree(right_prims, right_first, right_nodes, depth + 1, scale),
+/// What is the same for all subtrees.
+struct Builder {
+    scale: f32,
+    leaves: Leaves,
+    triangle_count: u32,
+}
+
+impl Builder {
+    /// Builds a subtree on all threads: its pieces and costs.
+    fn large(
+        &self,
+        prims: &mut [BuildPrim],
+        first: u32,
+        depth: u32,
+        extents: &Extents,
+    ) -> (Vec<Vec<BinaryNode>>, Costs) {
+        if prims.len() < PARALLEL_PRIMS {
+            let mut nodes = Vec::with_capacity(prims.len() / 2);
+            let costs = self.small(prims, first, depth, extents, &mut nodes);
+            return (vec![nodes], costs);
+        }
+        let count = prims.len() as u32;
+        let left_count = self.split(prims, depth, extents, f32::INFINITY).unwrap_or(prims.len() / 2);
+        let (left, right) = prims.split_at_mut(left_count);
+        let right_first = first + left_count as u32;
+        let (a, b) = rayon::join(
+            || self.large(left, first, depth + 1, &Extents::of(left)),
+            || self.large(right, right_first, depth + 1, &Extents::of(right)),
         );
-    } else {
-        subtree(left_prims, first, left_nodes, depth + 1, scale);
-        subtree(right_prims, right_first, right_nodes, depth + 1, scale);
-    }
-}
-
-/// Bounds of the primitives and of their centroids.
-fn extents(prims: &[BuildPrim]) -> (WideBox, WideBox) {
-    let empty = (WideBox::EMPTY, WideBox::EMPTY);
-    prims.iter().fold(empty, |(b, c), p| (b.union(p.bounds), c.with_point(p.bounds.centroid())))
-}
-
-#[derive(Clone, Copy)]
-struct Bin {
-    bounds: WideBox,
-    count: u32,
-}
-
-const EMPTY_BIN: Bin = Bin { bounds: WideBox::EMPTY, count: 0 };
-
-/// Added to a small number it leaves its integer in the lowest bits, after rounding to the nearest: bins lie
-/// around whole numbers, the first and the last of half the width.
-const TO_INTEGER: f32 = 12_582_912.0;
-
-/// Maps centroids to bins.
-struct Binning<const BINS: usize> {
-    origin: Vec4,
-    scale: Vec4,
-}
-
-impl<const BINS: usize> Binning<BINS> {
-    fn new(centroids: &WideBox) -> Self {
-        // Along axes on which there is nothing to divide everything falls into the first bin.
-        let size = centroids.max - centroids.min;
-        let divides = size.cmpgt(Vec4::ZERO) & size.cmplt(Vec4::INFINITY);
-        let scale = Vec4::splat((BINS - 1) as f32) / Vec4::select(divides, size, Vec4::INFINITY);
-        Self { origin: Vec4::select(divides, centroids.min, Vec4::ZERO), scale }
+        let bounds = extents.bounds.aabb();
+        let area = scaled_half_area(&bounds, self.scale);
+        let (costs, plan) = plan(area, f32::INFINITY, &a.1, &b.1);
+        let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
+        ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
     }
 
-    /// The bins of a primitive by axis.
-    fn bins(&self, prim: &BuildPrim) -> [usize; 3] {
-        let [x, y, z, _] = ((prim.bounds.centroid() - self.origin) * self.scale + Vec4::splat(TO_INTEGER)).to_array();
-        [x, y, z].map(|x| x.to_bits() as usize % BINS)
-    }
-
-    /// The bin of a primitive along one axis: what `bins` says there.
-    fn bin(&self, prim: &BuildPrim, axis: usize) -> usize {
-        let centroid = prim.bounds.min[axis] * 0.5 + prim.bounds.max[axis] * 0.5;
-        ((centroid - self.origin[axis]) * self.scale[axis] + TO_INTEGER).to_bits() as usize % BINS
-    }
-}
-
-/// Reorders the primitives by the cheapest split and returns the size of the first part; `None` where no bin border
-/// divides them. Few primitives need few bins.
-fn split(prims: &mut [BuildPrim], centroids: &WideBox, scale: f32) -> Option<usize> {
-    match prims.len() {
-        ..8 => split_into::<4>(prims, centroids, scale),
-        8..64 => split_into::<8>(prims, centroids, scale),
-        _ => split_into::<16>(prims, centroids, scale),
-    }
-}
-
-fn split_into<const BINS: usize>(prims: &mut [BuildPrim], centroids: &WideBox, scale: f32) -> Option<usize> {
-    let binning = Binning::<BINS>::new(centroids);
-    let mut bins = [[EMPTY_BIN; BINS]; 3];
-    for p in prims.iter() {
-        for (axis, i) in binning.bins(p).into_iter().enumerate() {
-            let bin = &mut bins[axis][i];
-            bin.bounds = bin.bounds.union(p.bounds);
-            bin.count += 1;
+    /// Appends a subtree to `nodes` and returns its costs.
+    fn small(
+        &self,
+        prims: &mut [BuildPrim],
+        first: u32,
+        depth: u32,
+        extents: &Extents,
+        nodes: &mut Vec<BinaryNode>,
+    ) -> Costs {
+        let bounds = extents.bounds.aabb();
+        let area = scaled_half_area(&bounds, self.scale);
+        let leaf = self.leaf_cost(prims, area);
+        let index = nodes.len();
+        nodes.push(BinaryNode { bounds, first, count: prims.len() as u32, second: 0, plan: Plan::LEAF });
+        if prims.len() == 1 {
+            return [leaf; WIDTH];
         }
+        let left_count = match self.split(prims, depth, extents, leaf) {
+            Some(count) => count,
+            // Finer splits seldom pay where the cheapest one does not: that costs less than a thousandth.
+            None if leaf < f32::INFINITY => return [leaf; WIDTH],
+            None => prims.len() / 2,
+        };
+        let (left, right) = prims.split_at_mut(left_count);
+        let (a, b) = (Extents::of(left), Extents::of(right));
+        let a = self.small(left, first, depth + 1, &a, nodes);
+        nodes[index].second = (nodes.len() - index) as u32;
+        let b = self.small(right, first + left_count as u32, depth + 1, &b, nodes);
+        let (costs, plan) = plan(area, leaf, &a, &b);
+        nodes[index].plan = plan;
+        costs
     }
-    let mut best = (f32::INFINITY, 0, 0);
-    for (axis, bins) in bins.iter().enumerate() {
-        let mut right_costs = [0.0; BINS];
-        let mut right = EMPTY_BIN;
-        for i in (1..BINS).rev() {
-            right.bounds = right.bounds.union(bins[i].bounds);
-            right.count += bins[i].count;
-            right_costs[i] = right.bounds.scaled_half_area(scale) * right.count as f32;
-        }
-        let mut left = EMPTY_BIN;
-        for i in 1..BINS {
-            left.bounds = left.bounds.union(bins[i - 1].bounds);
-            left.count += bins[i - 1].count;
-            let cost = left.bounds.scaled_half_area(scale) * left.count as f32 + right_costs[i];
-            if left.count > 0 && (left.count as usize) < prims.len() && cost < best.0 {
-                best = (cost, axis, i);
-            }
-        }
-    }
-    let (cost, axis, border) = best;
-    (cost < f32::INFINITY).then(|| partition(prims, |p| binning.bin(p, axis) < border))
-}
 
-/// Moves the primitives for which `is_left` holds to the front and returns how many they are.
-fn partition(prims: &mut [BuildPrim], is_left: impl Fn(&BuildPrim) -> bool) -> usize {
-    let (mut i, mut j) = (0, prims.len());
-    loop {
-        while i < j && is_left(&prims[i]) {
-            i += 1;
+    /// Reorders the primitives, more than one, by the cheapest split and returns the size of the first part; `None` where
+    /// there is no split that pays.
+    fn split(&self, prims: &mut [BuildPrim], depth: u32, extents: &Extents, leaf: f32) -> Option<usize> {
+        let by_cost = if depth < MAX_SAH_DEPTH { split(prims, extents, self.scale, leaf) } else { None };
+        by_cost.filter(|left| (1..prims.len()).contains(left))
+    }
+
+    /// Cost of a leaf of these primitives; infinite where they make none. Mixed ones do not.
+    fn leaf_cost(&self, prims: &[BuildPrim], area: f32) -> f32 {
+        if prims.len() > WIDTH {
+            return f32::INFINITY;
         }
-        while i < j && !is_left(&prims[j - 1]) {
-            j -= 1;
+        let triangles = prims.iter().filter(|p| p.id() < self.triangle_count).count();
+        let are_ids = self.leaves == Leaves::Ids || triangles == 0;
+        match (are_ids, prims.len()) {
+            (true, count @ ..=MAX_IDS) => area * ID_COST * count as f32,
+            (false, count) if count == triangles => area * BLOCK_COST,
+            _ => f32::INFINITY,
         }
-        if i == j {
-            return i;
-        }
-        prims.swap(i, j - 1);
     }
 }

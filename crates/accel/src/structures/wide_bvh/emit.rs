@@ -1,13 +1,12 @@
-//! Writing the wide tree: sizes of subtrees first, so that each has its place in the arrays and several threads write
-//! at once.
+//! Writing the wide tree: which binary nodes stand in which slots first, then all nodes and all blocks of triangles, each
+//! once and in its place.
 
-use super::binary::{BinaryTree, PARALLEL_PRIMS};
-use super::collapse::{Choice, Collapse, Leaves};
+use super::binary::{BinaryNode, BinaryTree, PARALLEL_PRIMS, Place};
+use super::collapse::Leaves;
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
 use arrayvec::ArrayVec;
 use photinus_geometry::Primitives;
 use rayon::prelude::*;
-use std::mem::take;
 
 /// The arrays of a wide tree.
 pub struct WideArrays {
@@ -21,176 +20,165 @@ pub struct WideArrays {
     pub levels: u32,
 }
 
-/// Places in each of the arrays.
+/// Offsets in each of the arrays.
 #[derive(Clone, Copy, Default)]
-struct Sizes {
-    nodes: usize,
-    blocks: usize,
-    ids: usize,
+struct Offsets {
+    node: usize,
+    block: usize,
+    id: usize,
 }
 
-/// What the subtree below a node takes, and in large ones what each of the nodes in its slots does.
+/// A node to be written: what fills its slots, and the indices of the first child of each kind.
+#[derive(Clone, Copy)]
+struct Draft {
+    place: Place,
+    first: Offsets,
+}
+
+/// The nodes below a node, children of one side by side, and the leaves in the order of their slots.
 #[derive(Default)]
-struct Extent {
-    sizes: Sizes,
+struct Drafts {
+    nodes: Vec<Draft>,
+    /// Where the primitives of blocks start, and how many they are.
+    blocks: Vec<(u32, u32)>,
+    ids: Vec<u32>,
     levels: u32,
-    parts: Vec<Self>,
-}
-
-/// Places that are still to be written.
-struct Room<'a> {
-    nodes: &'a mut [Node],
-    blocks: &'a mut [TriangleBlock],
-    ids: &'a mut [u32],
-    /// Where they start in the arrays.
-    at: Sizes,
-}
-
-impl<'a> Room<'a> {
-    fn take_nodes(&mut self, count: usize) -> &'a mut [Node] {
-        let (taken, left) = take(&mut self.nodes).split_at_mut(count);
-        self.nodes = left;
-        self.at.nodes += count;
-        taken
-    }
-
-    fn take_blocks(&mut self, count: usize) -> &'a mut [TriangleBlock] {
-        let (taken, left) = take(&mut self.blocks).split_at_mut(count);
-        self.blocks = left;
-        self.at.blocks += count;
-        taken
-    }
-
-    fn take_ids(&mut self, count: usize) -> &'a mut [u32] {
-        let (taken, left) = take(&mut self.ids).split_at_mut(count);
-        self.ids = left;
-        self.at.ids += count;
-        taken
-    }
-
-    fn split_off(&mut self, sizes: Sizes) -> Self {
-        let at = self.at;
-        let (nodes, blocks) = (self.take_nodes(sizes.nodes), self.take_blocks(sizes.blocks));
-        Self { nodes, blocks, ids: self.take_ids(sizes.ids), at }
-    }
 }
 
 /// Collapses `tree`; `None` where an array outgrows its index.
-pub fn collapse(tree: &BinaryTree, primitives: &Primitives, leaves: Leaves) -> Option<WideArrays> {
-    if tree.nodes.is_empty() {
+pub fn collapse(tree: &BinaryTree, primitives: &Primitives) -> Option<WideArrays> {
+    if tree.is_empty() {
         let (nodes, blocks) = (vec![Node::empty()], vec![TriangleBlock::empty()]);
         return Some(WideArrays { nodes, blocks, ids: Vec::new(), levels: 1 });
     }
-    let collapse = Collapse::new(tree, primitives, leaves);
-    let extent = collapse.measure(0);
-    let Sizes { nodes, blocks, ids } = extent.sizes;
-    if nodes.max(blocks).max(ids) >= MAX_INDEX {
+    let writer = Writer { tree, primitives };
+    let root = Draft { place: Place::default(), first: Offsets { node: 1, block: 1, id: 0 } };
+    let mut drafts = Drafts { nodes: vec![root], blocks: vec![(0, 0)], ..Drafts::default() };
+    writer.draft(0, 0, &mut drafts);
+    if drafts.nodes.len().max(drafts.blocks.len()).max(drafts.ids.len()) >= MAX_INDEX {
         return None;
     }
-    let mut out = WideArrays {
-        nodes: rayon::iter::repeat_n(Node::empty(), 1 + nodes).collect(),
-        blocks: rayon::iter::repeat_n(TriangleBlock::empty(), 1 + blocks).collect(),
-        ids: vec![0; ids],
-        levels: extent.levels,
-    };
-    let [root, nodes @ ..] = &mut out.nodes[..] else { return None };
-    let at = Sizes { nodes: 1, blocks: 1, ids: 0 };
-    let mut room = Room { nodes, blocks: &mut out.blocks[1..], ids: &mut out.ids, at };
-    collapse.write(0, root, &mut room, &extent.parts);
-    Some(out)
+    Some(WideArrays {
+        nodes: drafts.nodes.par_iter().with_min_len(64).map(|draft| writer.node(draft)).collect(),
+        blocks: drafts.blocks.par_iter().with_min_len(64).map(|range| writer.block(*range)).collect(),
+        ids: drafts.ids,
+        levels: drafts.levels,
+    })
 }
 
-impl Collapse<'_> {
-    /// What the subtree at `index`, a node, takes beside its own place.
-    fn measure(&self, index: usize) -> Extent {
-        let mut out = Extent::default();
-        let mut inner = ArrayVec::<_, WIDTH>::new();
-        for (child, choice) in self.slots(index) {
-            if matches!(choice, Choice::Node) {
-                inner.push(child);
-            } else if self.binary.leaf_kind(child) == Some(Leaves::Ids) {
-                out.sizes.ids += self.binary.tree.nodes[child].count as usize;
-            } else {
-                out.sizes.blocks += 1;
-            }
-        }
-        out.sizes.nodes += inner.len();
-        let is_large = self.binary.tree.nodes[index].count as usize >= PARALLEL_PRIMS;
-        if is_large {
-            out.parts = inner.par_iter().map(|child| self.measure(*child)).collect();
-            out.parts.iter().for_each(|part| out.levels = out.levels.max(part.levels));
-            let sizes = out.parts.iter().map(|part| part.sizes);
-            out.sizes = sizes.fold(out.sizes, Sizes::plus);
-        } else {
-            for child in inner {
-                let part = self.measure(child);
-                out.levels = out.levels.max(part.levels);
-                out.sizes = out.sizes.plus(part.sizes);
-            }
-        }
-        out.levels += 1;
-        out
+/// A binary tree and what it is over.
+struct Writer<'a> {
+    tree: &'a BinaryTree,
+    primitives: &'a Primitives,
+}
+
+impl Writer<'_> {
+    /// How a leaf is stored. None is mixed.
+    fn leaf_kind(&self, leaf: &BinaryNode) -> Leaves {
+        let id = self.tree.prims[leaf.first as usize].id();
+        if (id as usize) < self.primitives.triangle_count() { self.tree.leaves } else { Leaves::Ids }
     }
 
-    /// Writes the subtree at `index` to `place` and into the room: large ones, which have parts, on all threads.
-    fn write(&self, index: usize, place: &mut Node, room: &mut Room<'_>, parts: &[Extent]) {
-        let slots = self.slots(index);
-        // Children of a node lie side by side.
-        let mut next = room.at.nodes;
-        let interior = slots.iter().filter(|(_, choice)| matches!(choice, Choice::Node)).count();
-        let places = room.take_nodes(interior);
-        let mut inner = ArrayVec::<_, WIDTH>::new();
-        let mut children = ArrayVec::<_, WIDTH>::new();
-        for (child, choice) in slots {
-            let reference = if matches!(choice, Choice::Node) {
-                inner.push(child);
-                next += 1;
-                Child::node(next - 1)
+    /// Drafts the node at `index` of `out`, which knows its place, and everything below it.
+    fn draft(&self, index: usize, levels: u32, out: &mut Drafts) {
+        let place = out.nodes[index].place;
+        out.nodes[index].first = out.offsets();
+        out.levels = out.levels.max(levels + 1);
+        for (child, is_node) in self.tree.slots(place) {
+            let node = self.tree.node(child);
+            if is_node {
+                out.nodes.push(Draft { place: child, first: Offsets::default() });
+            } else if self.leaf_kind(node) == Leaves::Ids {
+                let ids = out.ids.len();
+                let prims = &self.tree.prims[node.first as usize..(node.first + node.count) as usize];
+                out.ids.extend(prims.iter().map(|p| p.id()));
+                out.ids[ids..].sort_unstable();
             } else {
-                self.write_leaf(child, room)
-            };
-            children.push((self.binary.tree.nodes[child].bounds, reference));
-        }
-        *place = Node::new(&children);
-        if parts.is_empty() {
-            for (child, place) in inner.into_iter().zip(places) {
-                self.write(child, place, room, &[]);
+                out.blocks.push((node.first, node.count));
             }
+        }
+        let inner = out.nodes[index].first.node..out.nodes.len();
+        if (self.tree.node(place).count as usize) < PARALLEL_PRIMS {
+            inner.for_each(|index| self.draft(index, levels + 1, out));
             return;
         }
-        let inner = inner.into_iter().zip(places).zip(parts);
-        let mut tasks: Vec<_> = inner.map(|(task, part)| (task, part, room.split_off(part.sizes))).collect();
-        tasks.par_iter_mut().for_each(|((child, place), part, room)| self.write(*child, place, room, &part.parts));
+        let part = |child: &mut Draft| {
+            let mut part = Drafts { nodes: vec![*child], ..Drafts::default() };
+            self.draft(0, levels + 1, &mut part);
+            part
+        };
+        let parts: Vec<_> = out.nodes[inner.clone()].par_iter_mut().map(part).collect();
+        for (index, part) in inner.zip(parts) {
+            out.append(index, part);
+        }
     }
 
-    fn write_leaf(&self, index: usize, room: &mut Room<'_>) -> Child {
-        let binary = &self.binary;
-        let node = &binary.tree.nodes[index];
-        let range = node.first as usize..(node.first + node.count) as usize;
-        let mut ids: ArrayVec<u32, WIDTH> = binary.tree.prims[range].iter().map(|p| p.id).collect();
-        ids.sort_unstable();
-        if binary.leaf_kind(index) == Some(Leaves::Ids) {
-            let first = room.at.ids;
-            room.take_ids(ids.len()).copy_from_slice(&ids);
-            return Child::ids(first, ids.len());
+    fn node(&self, draft: &Draft) -> Node {
+        let mut next = draft.first;
+        let slots = self.tree.slots(draft.place);
+        let children: ArrayVec<_, WIDTH> = slots
+            .into_iter()
+            .map(|(place, is_node)| {
+                let node = self.tree.node(place);
+                let child = if is_node {
+                    next.node += 1;
+                    Child::node(next.node - 1)
+                } else if self.leaf_kind(node) == Leaves::Ids {
+                    next.id += node.count as usize;
+                    Child::ids(next.id - node.count as usize, node.count as usize)
+                } else {
+                    next.block += 1;
+                    Child::block(next.block - 1)
+                };
+                (node.bounds, child)
+            })
+            .collect();
+        Node::new(&children)
+    }
+
+    fn block(&self, (first, count): (u32, u32)) -> TriangleBlock {
+        let mut block = TriangleBlock::empty();
+        let mut ids = [i32::MAX; WIDTH];
+        for (id, prim) in ids.iter_mut().zip(&self.tree.prims[first as usize..(first + count) as usize]) {
+            *id = prim.id() as i32;
         }
-        let first = room.at.blocks;
-        for block in room.take_blocks(1) {
-            for (lane, &id) in ids.iter().enumerate() {
-                for (v, p) in binary.primitives.triangle(id as usize).iter().enumerate() {
-                    for axis in 0..3 {
-                        block.vertices[3 * v + axis][lane] = p[axis];
-                    }
+        for id in &ids[..count as usize] {
+            // The lane is the number of smaller ids: eight comparisons at once, where sorting would guess.
+            let lane = ids.iter().filter(|other| *other < id).count() % WIDTH;
+            for (v, p) in self.primitives.triangle(*id as usize).iter().enumerate() {
+                for axis in 0..3 {
+                    block.vertices[3 * v + axis][lane] = p[axis];
                 }
-                block.ids[lane] = id;
             }
+            block.ids[lane] = *id as u32;
         }
-        Child::block(first)
+        block
     }
 }
 
-impl Sizes {
+impl Drafts {
+    /// Where the next of each goes.
+    fn offsets(&self) -> Offsets {
+        Offsets { node: self.nodes.len(), block: self.blocks.len(), id: self.ids.len() }
+    }
+
+    /// Appends what was drafted by itself: its first node belongs to `index`.
+    fn append(&mut self, index: usize, part: Self) {
+        let mut base = self.offsets();
+        base.node -= 1;
+        let mut moved = part.nodes.into_iter().map(|draft| Draft { first: draft.first.plus(base), ..draft });
+        if let Some(node) = moved.next() {
+            self.nodes[index] = node;
+        }
+        self.nodes.extend(moved);
+        self.blocks.extend(part.blocks);
+        self.ids.extend(part.ids);
+        self.levels = self.levels.max(part.levels);
+    }
+}
+
+impl Offsets {
     fn plus(self, other: Self) -> Self {
-        Self { nodes: self.nodes + other.nodes, blocks: self.blocks + other.blocks, ids: self.ids + other.ids }
+        Self { node: self.node + other.node, block: self.block + other.block, id: self.id + other.id }
     }
 }

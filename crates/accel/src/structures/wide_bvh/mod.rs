@@ -2,6 +2,7 @@
 //! instructions chosen at run time.
 
 mod binary;
+mod bins;
 mod candidates;
 mod collapse;
 mod dispatch;
@@ -55,11 +56,11 @@ impl WideBvh {
         // The blocks hold the triangles of the fused method; the tester is left with the spheres.
         let fused = options.method == <Woop as RtiMethod<f32>>::NAME;
         let tester = if fused { sphere_tester(primitives) } else { leaf_tester(primitives, options)? };
-        let tree = binary::build(primitives);
-        let bounds = tree.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds);
         let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
-        let arrays = emit::collapse(&tree, primitives, leaves)
-            .ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
+        let tree = binary::build(primitives, leaves);
+        let bounds = tree.bounds();
+        let arrays =
+            emit::collapse(&tree, primitives).ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
         Ok(Self {
             bounds,
             levels: arrays.levels,

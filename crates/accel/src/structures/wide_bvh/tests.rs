@@ -74,8 +74,8 @@ fn trees_hold_what_they_are_built_over_on_any_number_of_threads() {
         let primitives = scene(7, count, 1.0);
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let tree = pool.install(|| binary::build(&primitives));
-            emit::collapse(&tree, &primitives, Leaves::Blocks).unwrap()
+            let tree = pool.install(|| binary::build(&primitives, Leaves::Blocks));
+            emit::collapse(&tree, &primitives).unwrap()
         };
         let one = run(1);
         for threads in [2, 7] {
@@ -98,6 +98,27 @@ fn boxes_hold_their_contents() {
         let summary = tree.summary();
         assert_eq!(summary.references, 3000 + 150);
         assert!(summary.depth <= 8 && summary.prims_per_leaf > 2.0, "{summary:?}");
+    }
+}
+
+/// Triangles that no bin border divides, or whose sizes leave what can be computed.
+#[test]
+fn trees_of_hopeless_scenes_are_shallow_and_whole() {
+    let alike = |i: u32| if i.is_multiple_of(1000) { scene(5, 1, 1e30) } else { scene(4, 1, 1.0) };
+    let far = |i: u32| scene(i.into(), 1, if i.is_multiple_of(2) { 1.1e38 } else { 1e-38 });
+    let nested = |i: u32| scene(6, 1, 2.0_f32.powi(i as i32 % 200 - 100));
+    let unbounded = |i: u32| scene(i.into(), 1, [1.0, f32::NAN, f32::INFINITY, 1e38][i as usize % 4]);
+    let parts: [&dyn Fn(u32) -> Arc<Primitives>; 4] = [&alike, &far, &nested, &unbounded];
+    for (i, (part, hittable)) in parts.into_iter().zip([10_000, 10_000, 10_000, 5000]).enumerate() {
+        let mut all = Primitives::default();
+        for part in (0..10_000).map(part) {
+            all.triangles.push([0, 1, 2].map(|v| v + all.positions.len() as u32));
+            all.positions.extend(&part.positions);
+        }
+        let tree = WideBvh::new(&all, &BuildOptions::default()).unwrap();
+        tree.validate();
+        let summary = tree.summary();
+        assert_eq!((summary.references, summary.depth <= 78), (hittable, true), "scene {i}: {summary:?}");
     }
 }
 
