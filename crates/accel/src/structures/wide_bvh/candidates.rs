@@ -1,15 +1,14 @@
 //! Triangles that the filter left, of the rays of all slots: they are finished together, without a branch that depends on
 //! what comes out. Whether a triangle is hit is a coin tossed, and the divisions are long under way when it falls.
 
-use super::kernels::sixteen::Sixteen;
-use super::kernels::{Kernel, SET_LANES};
+use super::kernels::{Four, Kernel, SET_LANES};
 use super::layout::WIDTH;
 use super::traverse::SLOTS;
 use photinus_geometry::Hit;
 use photinus_intersect::methods::woop::finish_lanes;
 
 /// Triangles finished at a time.
-pub const TOGETHER: usize = 8;
+pub const TOGETHER: usize = 4;
 
 /// All lanes of all slots, and a whole mask to be written.
 const ROOM: usize = (SLOTS + 1) * WIDTH;
@@ -57,20 +56,14 @@ impl Candidates {
 
     /// Finishes what was put to all places, the latest and older: which are hits, and their parameters and weights.
     #[inline(always)]
-    pub fn finish<K: Kernel>(&self, kernel: K) -> (u8, [[f32; 2 * TOGETHER]; 3]) {
-        let zeros = kernel.zeros();
-        let mut sheared = [[zeros.halves()[0]; 3]; 3];
-        for i in 0..3 {
-            for k in 0..3 {
-                sheared[i][k] = zeros.half(&self.sheared[3 * i + k]);
-            }
+    pub fn finish<K: Kernel>(&self, kernel: K) -> (u8, [[f32; TOGETHER]; 3]) {
+        let zeros = kernel.four();
+        let mut sheared = [[zeros; 3]; 3];
+        for (i, row) in self.sheared.iter().enumerate() {
+            sheared[i / 3][i % 3] = zeros.load(row);
         }
-        let found = finish_lanes(&sheared, zeros.half(&self.dir_z));
-        let mut out = [[0.0; 2 * TOGETHER]; 3];
-        K::Sixteen::rounded([found.t, found.t]).store(&mut out[0]);
-        K::Sixteen::rounded([found.alpha, found.alpha]).store(&mut out[1]);
-        K::Sixteen::rounded([found.beta, found.beta]).store(&mut out[2]);
-        (found.hits, out)
+        let found = finish_lanes(&sheared, zeros.load(&self.dir_z));
+        (found.hits, [found.t.rounded(), found.alpha.rounded(), found.beta.rounded()])
     }
 }
 

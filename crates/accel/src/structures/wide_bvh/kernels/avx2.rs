@@ -1,5 +1,6 @@
 //! AVX2: eight lanes in one register.
 
+use super::four::AvxFour;
 use super::sixteen::avx2::Two;
 use super::{Kernel, Lanes, Reach, SET_LANES, eight};
 use crate::structure::RayCounters;
@@ -66,6 +67,7 @@ fn trace<const ANY: bool, const COUNT: bool>(
 
 impl Kernel for Avx2 {
     type Sixteen = Two;
+    type Four = AvxFour;
 
     #[inline(always)]
     fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
@@ -180,6 +182,12 @@ impl Kernel for Avx2 {
     fn zeros(self) -> Two {
         // SAFETY: `self` proves that the machine has AVX2.
         unsafe { Two::zeros() }
+    }
+
+    #[inline(always)]
+    fn four(self) -> AvxFour {
+        // SAFETY: `self` proves that the machine has AVX2.
+        unsafe { AvxFour::zeros() }
     }
 
     #[inline(always)]

@@ -1,6 +1,7 @@
 //! AVX-512 on eight lanes: mask registers and 32 vector registers. Sixteen lanes would share fewer ports and gain
 //! nothing on nodes of eight.
 
+use super::four::AvxFour;
 use super::sixteen::avx512::One;
 use super::{Kernel, Lanes, Reach, eight};
 use crate::structure::RayCounters;
@@ -69,6 +70,7 @@ fn trace<const ANY: bool, const COUNT: bool>(
 
 impl Kernel for Avx512 {
     type Sixteen = One;
+    type Four = AvxFour;
 
     #[inline(always)]
     fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
@@ -177,6 +179,12 @@ impl Kernel for Avx512 {
     fn zeros(self) -> One {
         // SAFETY: `self` proves that the machine has AVX-512F.
         unsafe { One::zeros() }
+    }
+
+    #[inline(always)]
+    fn four(self) -> AvxFour {
+        // SAFETY: `self` proves that the machine has AVX2.
+        unsafe { AvxFour::zeros() }
     }
 
     #[inline(always)]

@@ -10,6 +10,8 @@ pub mod avx2;
 pub mod avx512;
 #[cfg(target_arch = "x86_64")]
 mod eight;
+#[cfg(target_arch = "x86_64")]
+mod four;
 pub mod scalar;
 pub mod sixteen;
 
@@ -18,12 +20,15 @@ use super::packet::{Beam, BeamSlots, PACKET, Packet};
 use super::ray_setup::RaySetup;
 pub use crate::reach::Reach;
 use photinus_geometry::Ray;
+use photinus_intersect::doubles::{self, Doubles};
 use sixteen::Sixteen;
 
 /// A kernel: the tests of one instruction set. Having one proves that the machine can run it.
 pub trait Kernel: Copy {
     /// A number for each ray of a packet.
     type Sixteen: Sixteen;
+    /// Doubles in registers that leave other tests their ports.
+    type Four: Four;
 
     /// Writes the children of `node` that the ray may enter at a parameter up to `t_max` to `out`, from far to near,
     /// and returns how many they are; what lies behind them in `out` is left undefined.
@@ -47,11 +52,35 @@ pub trait Kernel: Copy {
     /// Zeros, from which the numbers of packets are made.
     fn zeros(self) -> Self::Sixteen;
 
+    /// Zeros, from which doubles are made.
+    fn four(self) -> Self::Four;
+
     /// The rays' components by ray, in the order in which a ray holds them.
     fn components(self, rays: &[Ray; PACKET]) -> [Self::Sixteen; 8];
 
     /// Asks for the five cache lines from `start`, a node or a block, to be near soon.
     fn prefetch(self, start: *const u8);
+}
+
+/// Four doubles.
+pub trait Four: Doubles {
+    /// Numbers from memory, into the registers of `self`; exact.
+    fn load(self, from: &[f32; 4]) -> Self;
+
+    /// The nearest numbers.
+    fn rounded(self) -> [f32; 4];
+}
+
+impl Four for doubles::Lanes<4> {
+    #[inline(always)]
+    fn load(self, from: &[f32; 4]) -> Self {
+        Self(from.map(f64::from))
+    }
+
+    #[inline(always)]
+    fn rounded(self) -> [f32; 4] {
+        self.0.map(|x| x as f32)
+    }
 }
 
 /// For each mask of eight lanes the indices of those that are set, in front.

@@ -6,6 +6,7 @@ use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
 use crate::structures::wide_bvh::packet::{Beam, BeamSlots, PACKET, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{NO_HIT, Ray};
+use photinus_intersect::doubles;
 
 /// The kernel.
 #[derive(Clone, Copy)]
@@ -25,6 +26,7 @@ fn min(a: f32, b: f32) -> f32 {
 
 impl Kernel for Scalar {
     type Sixteen = Plain;
+    type Four = doubles::Lanes<4>;
 
     #[inline(always)]
     fn node(self, ray: &RaySetup, node: &Node, t_max: f32, out: Lanes<'_>) -> usize {
@@ -143,6 +145,11 @@ impl Kernel for Scalar {
     #[inline(always)]
     fn zeros(self) -> Plain {
         Plain([0.0; PACKET])
+    }
+
+    #[inline(always)]
+    fn four(self) -> doubles::Lanes<4> {
+        doubles::Lanes([0.0; 4])
     }
 
     #[inline(always)]

@@ -185,15 +185,6 @@ impl Sixteen for Two {
             Self([half(halves[0]), half(halves[1])])
         }
     }
-
-    #[inline(always)]
-    fn half(self, from: &[f32; 8]) -> TwoHalf {
-        // SAFETY: `self` proves that the machine has AVX2; the loads are of four words of eight each.
-        unsafe {
-            let load = |start: usize| _mm256_cvtps_pd(_mm_loadu_ps(from.as_ptr().add(start)));
-            TwoHalf([load(0), load(4)])
-        }
-    }
 }
 
 /// Eight doubles.

@@ -151,12 +151,6 @@ impl Sixteen for One {
         // SAFETY: the halves prove that the machine has AVX-512F and DQ.
         unsafe { Self::from_halves(_mm512_cvtpd_ps(first.0), _mm512_cvtpd_ps(second.0)) }
     }
-
-    #[inline(always)]
-    fn half(self, from: &[f32; 8]) -> OneHalf {
-        // SAFETY: `self` proves that the machine has AVX-512F; the load is of eight words.
-        unsafe { OneHalf(_mm512_cvtps_pd(_mm256_loadu_ps(from.as_ptr()))) }
-    }
 }
 
 /// Eight doubles.

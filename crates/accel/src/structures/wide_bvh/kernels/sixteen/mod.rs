@@ -7,7 +7,7 @@ pub mod avx2;
 pub mod avx512;
 pub mod scalar;
 
-use crate::structures::wide_bvh::packet::{ByRay, PACKET};
+use crate::structures::wide_bvh::packet::ByRay;
 use photinus_intersect::doubles::Doubles;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -53,7 +53,4 @@ pub trait Sixteen: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
 
     /// The nearest to doubles.
     fn rounded(halves: [Self::Half; 2]) -> Self;
-
-    /// Eight numbers in doubles, by the registers of `self`.
-    fn half(self, from: &[f32; PACKET / 2]) -> Self::Half;
 }

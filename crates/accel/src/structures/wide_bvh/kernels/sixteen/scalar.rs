@@ -119,9 +119,4 @@ impl Sixteen for Plain {
     fn rounded([first, second]: [Lanes<8>; 2]) -> Self {
         Self(std::array::from_fn(|i| if i < 8 { first.0[i] as f32 } else { second.0[i - 8] as f32 }))
     }
-
-    #[inline(always)]
-    fn half(self, from: &[f32; 8]) -> Lanes<8> {
-        Lanes(from.map(f64::from))
-    }
 }
