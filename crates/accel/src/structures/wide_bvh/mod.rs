@@ -14,6 +14,7 @@ mod packet_walk;
 mod ray_setup;
 mod summary;
 mod traverse;
+mod visits;
 
 use crate::list::leaf_tester;
 use crate::options::{BuildError, BuildOptions};

@@ -122,6 +122,27 @@ fn trees_of_hopeless_scenes_are_shallow_and_whole() {
     }
 }
 
+#[test]
+fn walls_that_fit_a_block_may_stand_apart() {
+    // Floor, ceiling and two sides of a low hall: any two parts of them are as large as the hall.
+    let corner = |i: usize| Vec3::from(std::array::from_fn(|axis| [9.0, 2.0, 9.0][axis] * (i >> axis & 1) as f32));
+    let mut hall = Primitives { positions: (0..8).map(corner).collect(), ..Primitives::default() };
+    for [a, b, c, d] in [[0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]] {
+        hall.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    let tree = binary::build(&hall, Leaves::Blocks);
+    let mut flat = 0;
+    let mut waiting = vec![binary::Place::default()];
+    while let Some(place) = waiting.pop() {
+        let node = tree.node(place);
+        flat += u32::from(node.count == 2 && node.bounds.size().min_element() < 0.1);
+        if !node.is_leaf() {
+            waiting.extend(tree.children(place));
+        }
+    }
+    assert_eq!(flat, 4);
+}
+
 /// Groups of sixteen rays side by side: a camera's, mirrored ones, shadows, and some that must not run together.
 fn grouped_rays(size: f32) -> Vec<Ray> {
     let mut out = Vec::new();
