@@ -6,6 +6,7 @@
 use super::bins::{BuildPrim, Extents, split};
 use super::collapse::{BLOCK_COST, Costs, ID_COST, Leaves, Plan, plan};
 use super::layout::{MAX_IDS, WIDTH};
+use super::reinsert::{Linked, LinkedTree, reinserted};
 use super::visits::Visits;
 use crate::bounds::padded_bounds;
 use photinus_geometry::{Aabb, Primitives};
@@ -60,6 +61,11 @@ pub struct BinaryTree {
 }
 
 impl BinaryTree {
+    /// How many nodes there are.
+    pub fn node_count(&self) -> usize {
+        self.pieces.iter().map(Vec::len).sum()
+    }
+
     /// Whether there is no primitive.
     pub fn is_empty(&self) -> bool {
         self.pieces.is_empty()
@@ -111,15 +117,22 @@ fn gather(primitives: &Primitives) -> Vec<BuildPrim> {
     prims
 }
 
-/// Builds the tree for these leaves.
-pub fn build(primitives: &Primitives, leaves: Leaves) -> BinaryTree {
+/// Builds the tree for these leaves, with so many rounds of reinsertions.
+pub fn build(primitives: &Primitives, leaves: Leaves, rounds: u32) -> BinaryTree {
     let mut prims = gather(primitives);
     let extents = prims.par_chunks(PARALLEL_PRIMS).map(Extents::of).reduce(|| Extents::EMPTY, Extents::union);
     let visits = Visits::new(&extents.bounds.aabb());
     let large_visits = LARGE_PART * visits.of(&extents.bounds.aabb());
     let builder = Builder { visits, large_visits, leaves, triangle_count: primitives.triangle_count() as u32 };
     let pieces = if prims.is_empty() { Vec::new() } else { builder.large(&mut prims, 0, 0, &extents).0 };
-    BinaryTree { pieces, prims, leaves }
+    let mut tree = BinaryTree { pieces, prims, leaves };
+    let linked = if tree.is_empty() || rounds == 0 { None } else { reinserted(&tree, visits, rounds) };
+    if let Some(linked) = linked {
+        let mut prims = tree.prims.clone();
+        tree.pieces = builder.reordered(&linked, LinkedTree::ROOT, &tree.prims, &mut prims, 0).0;
+        tree.prims = prims;
+    }
+    tree
 }
 
 /// What is the same for all subtrees.
@@ -158,6 +171,62 @@ impl Builder {
         let (costs, plan) = plan(visits, f32::INFINITY, &a.1, &b.1);
         let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
         ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
+    }
+
+    /// Lays out a subtree of `linked` and plans it: its pieces and costs. Takes its primitives from `old` to `prims`, which
+    /// start at `first`.
+    fn reordered(
+        &self,
+        linked: &LinkedTree,
+        index: u32,
+        old: &[BuildPrim],
+        prims: &mut [BuildPrim],
+        first: u32,
+    ) -> (Vec<Vec<BinaryNode>>, Costs) {
+        let children = linked.children(index).filter(|_| prims.len() >= PARALLEL_PRIMS);
+        let Some([a, b]) = children else {
+            let mut nodes = Vec::with_capacity(prims.len() / 2);
+            let costs = self.small_reordered(linked, index, old, prims, first, &mut nodes);
+            return (vec![nodes], costs);
+        };
+        let (count, left_count) = (prims.len() as u32, linked.node(a).count);
+        let (left, right) = prims.split_at_mut(left_count as usize);
+        let (a, b) = rayon::join(
+            || self.reordered(linked, a, old, left, first),
+            || self.reordered(linked, b, old, right, first + left_count),
+        );
+        let bounds = linked.node(index).bounds;
+        let (costs, plan) = plan(self.visits.of(&bounds), f32::INFINITY, &a.1, &b.1);
+        let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
+        ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
+    }
+
+    /// The same of a piece, appended to `nodes`.
+    fn small_reordered(
+        &self,
+        linked: &LinkedTree,
+        index: u32,
+        old: &[BuildPrim],
+        prims: &mut [BuildPrim],
+        first: u32,
+        nodes: &mut Vec<BinaryNode>,
+    ) -> Costs {
+        let Linked { bounds, first: old_first, count, .. } = *linked.node(index);
+        let place = nodes.len();
+        nodes.push(BinaryNode { bounds, first, count, second: 0, plan: Plan::LEAF });
+        let Some([a, b]) = linked.children(index) else {
+            prims.copy_from_slice(&old[old_first as usize..][..count as usize]);
+            return [self.leaf_cost(prims, self.visits.of(&bounds)); WIDTH];
+        };
+        let left_count = linked.node(a).count;
+        let (left, right) = prims.split_at_mut(left_count as usize);
+        let a = self.small_reordered(linked, a, old, left, first, nodes);
+        nodes[place].second = (nodes.len() - place) as u32;
+        let b = self.small_reordered(linked, b, old, right, first + left_count, nodes);
+        let visits = self.visits.of(&bounds);
+        let (costs, plan) = plan(visits, self.leaf_cost(prims, visits), &a, &b);
+        nodes[place].plan = plan;
+        costs
     }
 
     /// Appends a subtree to `nodes` and returns its costs.
