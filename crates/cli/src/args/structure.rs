@@ -49,6 +49,10 @@ pub struct StructureArgs {
     /// suits the structure]
     #[arg(long, value_name = "X", value_parser = values::positive)]
     pub reference_limit: Option<f64>,
+    /// wide-bvh: rounds in which subtrees are moved to where rays visit them least
+    #[arg(long, value_name = "N", default_value_t = BuildOptions::default().reinsertion_rounds,
+        value_parser = value_parser!(u32).range(0..=100))]
+    pub reinsertion_rounds: u32,
     /// uniform-grid, compact-grid: cells for each primitive, at most 1000
     #[arg(long, value_name = "X", default_value_t = BuildOptions::default().density, value_parser = values::positive)]
     pub density: f64,
@@ -74,6 +78,7 @@ impl StructureArgs {
             bins: self.bins,
             split_alpha: self.split_alpha,
             reference_limit: self.reference_limit,
+            reinsertion_rounds: self.reinsertion_rounds,
             density: self.density,
             grid_cells: names::grid_cells(&self.grid_cells)?,
             ..BuildOptions::default()

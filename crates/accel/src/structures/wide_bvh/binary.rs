@@ -6,6 +6,8 @@
 use super::bins::{BuildPrim, Extents, split};
 use super::collapse::{BLOCK_COST, Costs, ID_COST, Leaves, Plan, plan};
 use super::layout::{MAX_IDS, WIDTH};
+use super::reinsert::{Linked, LinkedTree, reinserted};
+use super::visits::Visits;
 use crate::bounds::padded_bounds;
 use photinus_geometry::{Aabb, Primitives};
 use rayon::prelude::*;
@@ -14,6 +16,8 @@ use rayon::prelude::*;
 pub const PARALLEL_PRIMS: usize = 4096;
 /// Below this depth nodes are halved by count, which takes 30 levels at most: no tree is deeper than 78.
 const MAX_SAH_DEPTH: u32 = 48;
+/// Visits of the scene, of which so large a part makes a leaf large.
+const LARGE_PART: f32 = 1.0 / 256.0;
 
 /// A node over `count` consecutive primitives from `first`.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +33,13 @@ pub struct BinaryNode {
     second: u32,
     /// What is best done with the subtree.
     pub plan: Plan,
+}
+
+impl BinaryNode {
+    /// Whether it has no children.
+    pub fn is_leaf(&self) -> bool {
+        self.second == 0
+    }
 }
 
 /// Where a node is.
@@ -50,6 +61,11 @@ pub struct BinaryTree {
 }
 
 impl BinaryTree {
+    /// How many nodes there are.
+    pub fn node_count(&self) -> usize {
+        self.pieces.iter().map(Vec::len).sum()
+    }
+
     /// Whether there is no primitive.
     pub fn is_empty(&self) -> bool {
         self.pieces.is_empty()
@@ -101,21 +117,29 @@ fn gather(primitives: &Primitives) -> Vec<BuildPrim> {
     prims
 }
 
-/// Builds the tree for these leaves.
-pub fn build(primitives: &Primitives, leaves: Leaves) -> BinaryTree {
+/// Builds the tree for these leaves, with so many rounds of reinsertions.
+pub fn build(primitives: &Primitives, leaves: Leaves, rounds: u32) -> BinaryTree {
     let mut prims = gather(primitives);
     let extents = prims.par_chunks(PARALLEL_PRIMS).map(Extents::of).reduce(|| Extents::EMPTY, Extents::union);
-    let size = extents.bounds.aabb().size().max_element();
-    // Lengths are multiplied with it before areas are taken, so that no scene is too small or too large for them.
-    let scale = if size > 0.0 && size.is_finite() { (1.0 / size).min(f32::MAX) } else { 1.0 };
-    let builder = Builder { scale, leaves, triangle_count: primitives.triangle_count() as u32 };
+    let visits = Visits::new(&extents.bounds.aabb());
+    let large_visits = LARGE_PART * visits.of(&extents.bounds.aabb());
+    let builder = Builder { visits, large_visits, leaves, triangle_count: primitives.triangle_count() as u32 };
     let pieces = if prims.is_empty() { Vec::new() } else { builder.large(&mut prims, 0, 0, &extents).0 };
-    BinaryTree { pieces, prims, leaves }
+    let mut tree = BinaryTree { pieces, prims, leaves };
+    let linked = if tree.is_empty() || rounds == 0 { None } else { reinserted(&tree, visits, rounds) };
+    if let Some(linked) = linked {
+        let mut prims = tree.prims.clone();
+        tree.pieces = builder.reordered(&linked, LinkedTree::ROOT, &tree.prims, &mut prims, 0).0;
+        tree.prims = prims;
+    }
+    tree
 }
 
 /// What is the same for all subtrees.
 struct Builder {
-    scale: f32,
+    visits: Visits,
+    /// Leaves visited more often are large.
+    large_visits: f32,
     leaves: Leaves,
     triangle_count: u32,
 }
@@ -143,10 +167,66 @@ impl Builder {
             || self.large(right, right_first, depth + 1, &Extents::of(right)),
         );
         let bounds = extents.bounds.aabb();
-        let area = scaled_half_area(&bounds, self.scale);
-        let (costs, plan) = plan(area, f32::INFINITY, &a.1, &b.1);
+        let visits = self.visits.of(&bounds);
+        let (costs, plan) = plan(visits, f32::INFINITY, &a.1, &b.1);
         let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
         ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
+    }
+
+    /// Lays out a subtree of `linked` and plans it: its pieces and costs. Takes its primitives from `old` to `prims`, which
+    /// start at `first`.
+    fn reordered(
+        &self,
+        linked: &LinkedTree,
+        index: u32,
+        old: &[BuildPrim],
+        prims: &mut [BuildPrim],
+        first: u32,
+    ) -> (Vec<Vec<BinaryNode>>, Costs) {
+        let children = linked.children(index).filter(|_| prims.len() >= PARALLEL_PRIMS);
+        let Some([a, b]) = children else {
+            let mut nodes = Vec::with_capacity(prims.len() / 2);
+            let costs = self.small_reordered(linked, index, old, prims, first, &mut nodes);
+            return (vec![nodes], costs);
+        };
+        let (count, left_count) = (prims.len() as u32, linked.node(a).count);
+        let (left, right) = prims.split_at_mut(left_count as usize);
+        let (a, b) = rayon::join(
+            || self.reordered(linked, a, old, left, first),
+            || self.reordered(linked, b, old, right, first + left_count),
+        );
+        let bounds = linked.node(index).bounds;
+        let (costs, plan) = plan(self.visits.of(&bounds), f32::INFINITY, &a.1, &b.1);
+        let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
+        ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
+    }
+
+    /// The same of a piece, appended to `nodes`.
+    fn small_reordered(
+        &self,
+        linked: &LinkedTree,
+        index: u32,
+        old: &[BuildPrim],
+        prims: &mut [BuildPrim],
+        first: u32,
+        nodes: &mut Vec<BinaryNode>,
+    ) -> Costs {
+        let Linked { bounds, first: old_first, count, .. } = *linked.node(index);
+        let place = nodes.len();
+        nodes.push(BinaryNode { bounds, first, count, second: 0, plan: Plan::LEAF });
+        let Some([a, b]) = linked.children(index) else {
+            prims.copy_from_slice(&old[old_first as usize..][..count as usize]);
+            return [self.leaf_cost(prims, self.visits.of(&bounds)); WIDTH];
+        };
+        let left_count = linked.node(a).count;
+        let (left, right) = prims.split_at_mut(left_count as usize);
+        let a = self.small_reordered(linked, a, old, left, first, nodes);
+        nodes[place].second = (nodes.len() - place) as u32;
+        let b = self.small_reordered(linked, b, old, right, first + left_count, nodes);
+        let visits = self.visits.of(&bounds);
+        let (costs, plan) = plan(visits, self.leaf_cost(prims, visits), &a, &b);
+        nodes[place].plan = plan;
+        costs
     }
 
     /// Appends a subtree to `nodes` and returns its costs.
@@ -159,14 +239,16 @@ impl Builder {
         nodes: &mut Vec<BinaryNode>,
     ) -> Costs {
         let bounds = extents.bounds.aabb();
-        let area = scaled_half_area(&bounds, self.scale);
-        let leaf = self.leaf_cost(prims, area);
+        let visits = self.visits.of(&bounds);
+        let leaf = self.leaf_cost(prims, visits);
         let index = nodes.len();
         nodes.push(BinaryNode { bounds, first, count: prims.len() as u32, second: 0, plan: Plan::LEAF });
         if prims.len() == 1 {
             return [leaf; WIDTH];
         }
-        let left_count = match self.split(prims, depth, extents, leaf) {
+        // Large leaves are few, and differ: six walls are best alone, though any two parts of them are as large as the room.
+        let most = if visits > self.large_visits { f32::INFINITY } else { leaf };
+        let left_count = match self.split(prims, depth, extents, most) {
             Some(count) => count,
             // Finer splits seldom pay where the cheapest one does not: that costs less than a thousandth.
             None if leaf < f32::INFINITY => return [leaf; WIDTH],
@@ -177,28 +259,28 @@ impl Builder {
         let a = self.small(left, first, depth + 1, &a, nodes);
         nodes[index].second = (nodes.len() - index) as u32;
         let b = self.small(right, first + left_count as u32, depth + 1, &b, nodes);
-        let (costs, plan) = plan(area, leaf, &a, &b);
+        let (costs, plan) = plan(visits, leaf, &a, &b);
         nodes[index].plan = plan;
         costs
     }
 
     /// Reorders the primitives, more than one, by the cheapest split and returns the size of the first part; `None` where
     /// there is no split that pays.
-    fn split(&self, prims: &mut [BuildPrim], depth: u32, extents: &Extents, leaf: f32) -> Option<usize> {
-        let by_cost = if depth < MAX_SAH_DEPTH { split(prims, extents, self.scale, leaf) } else { None };
+    fn split(&self, prims: &mut [BuildPrim], depth: u32, extents: &Extents, most: f32) -> Option<usize> {
+        let by_cost = if depth < MAX_SAH_DEPTH { split(prims, extents, self.visits.scale, most) } else { None };
         by_cost.filter(|left| (1..prims.len()).contains(left))
     }
 
-    /// Cost of a leaf of these primitives; infinite where they make none. Mixed ones do not.
-    fn leaf_cost(&self, prims: &[BuildPrim], area: f32) -> f32 {
+    /// Cost of a leaf of these primitives, visited so often; infinite where they make none. Mixed ones do not.
+    fn leaf_cost(&self, prims: &[BuildPrim], visits: f32) -> f32 {
         if prims.len() > WIDTH {
             return f32::INFINITY;
         }
         let triangles = prims.iter().filter(|p| p.id() < self.triangle_count).count();
         let are_ids = self.leaves == Leaves::Ids || triangles == 0;
         match (are_ids, prims.len()) {
-            (true, count @ ..=MAX_IDS) => area * ID_COST * count as f32,
-            (false, count) if count == triangles => area * BLOCK_COST,
+            (true, count @ ..=MAX_IDS) => visits * ID_COST * count as f32,
+            (false, count) if count == triangles => visits * BLOCK_COST,
             _ => f32::INFINITY,
         }
     }

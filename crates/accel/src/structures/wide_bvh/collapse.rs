@@ -47,9 +47,9 @@ impl Plan {
     }
 }
 
-/// Costs and plan of a subtree of this area, with the costs of its children and of making it a leaf, infinite where
+/// Costs and plan of a subtree visited so often, with the costs of its children and of making it a leaf, infinite where
 /// it makes none.
-pub fn plan(area: f32, leaf: f32, a: &Costs, b: &Costs) -> (Costs, Plan) {
+pub fn plan(visits: f32, leaf: f32, a: &Costs, b: &Costs) -> (Costs, Plan) {
     const LAST: usize = WIDTH - 1;
     // Costs by slots less one, for all numbers of slots at once: the second child's are moved by the first child's slots.
     let mut moved = [f32::INFINITY; 2 * WIDTH];
@@ -65,7 +65,7 @@ pub fn plan(area: f32, leaf: f32, a: &Costs, b: &Costs) -> (Costs, Plan) {
     }
     // Where costs overflow all are as good, and a node still needs its children.
     let mut bits = first_slots[LAST].max(1) << (3 * (LAST - 1));
-    let as_node = area * NODE_COST + costs[LAST];
+    let as_node = visits * NODE_COST + costs[LAST];
     costs[0] = leaf;
     // The comparison also takes the node where costs overflow and no leaf is possible.
     if leaf == f32::INFINITY || as_node < leaf {

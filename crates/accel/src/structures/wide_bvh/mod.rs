@@ -13,11 +13,13 @@ mod packet;
 mod packet_test;
 mod packet_walk;
 mod ray_setup;
+mod reinsert;
 mod summary;
 mod traverse;
+mod visits;
 
 use crate::list::leaf_tester;
-use crate::options::{BuildError, BuildOptions};
+use crate::options::{BuildError, BuildOptions, check};
 use crate::structure::{RayCounters, Structure, StructureSummary};
 use collapse::Leaves;
 use dispatch::Chosen;
@@ -32,7 +34,10 @@ pub const NAME: &str = "wide-bvh";
 /// One line for the help.
 pub const SUMMARY: &str = "eight-wide bounding volume hierarchy with vector instructions";
 /// Where it was published.
-pub const SOURCE: &str = "Wald, Benthin, Boulos, RT 2008; Ylitie, Karras, Laine, HPG 2017";
+pub const SOURCE: &str = "Wald, Benthin, Boulos, RT 2008; Ylitie, Karras, Laine, HPG 2017; Meister, Bittner, EG 2018";
+
+/// Most rounds of reinsertions.
+const MAX_ROUNDS: u32 = 100;
 
 /// The tree.
 struct WideBvh {
@@ -57,7 +62,9 @@ impl WideBvh {
         let fused = options.method == <Woop as RtiMethod<f32>>::NAME;
         let tester = if fused { sphere_tester(primitives) } else { leaf_tester(primitives, options)? };
         let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
-        let tree = binary::build(primitives, leaves);
+        let rounds = options.reinsertion_rounds;
+        check("the number of rounds of reinsertions", rounds, rounds <= MAX_ROUNDS, "0 to 100")?;
+        let tree = binary::build(primitives, leaves, rounds);
         let bounds = tree.bounds();
         let arrays =
             emit::collapse(&tree, primitives).ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;

@@ -74,7 +74,7 @@ fn trees_hold_what_they_are_built_over_on_any_number_of_threads() {
         let primitives = scene(7, count, 1.0);
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let tree = pool.install(|| binary::build(&primitives, Leaves::Blocks));
+            let tree = pool.install(|| binary::build(&primitives, Leaves::Blocks, 2));
             emit::collapse(&tree, &primitives).unwrap()
         };
         let one = run(1);
@@ -120,6 +120,68 @@ fn trees_of_hopeless_scenes_are_shallow_and_whole() {
         let summary = tree.summary();
         assert_eq!((summary.references, summary.depth <= 78), (hittable, true), "scene {i}: {summary:?}");
     }
+}
+
+/// All nodes of a binary tree, each held against its children.
+fn binary_nodes(tree: &binary::BinaryTree) -> Vec<binary::BinaryNode> {
+    let (mut out, mut waiting) = (Vec::new(), vec![binary::Place::default()]);
+    while let Some(place) = waiting.pop() {
+        let node = tree.node(place);
+        out.push(*node);
+        if !node.is_leaf() {
+            let [a, b] = tree.children(place).map(|child| tree.node(child));
+            assert_eq!(node.bounds, a.bounds.union(b.bounds));
+            assert_eq!((a.first, b.first, node.count), (node.first, node.first + a.count, a.count + b.count));
+            waiting.extend(tree.children(place));
+        }
+    }
+    out
+}
+
+#[test]
+fn reinsertions_leave_trees_whole_and_make_them_cheaper() {
+    let primitives = scene(7, 20_000, 1.0);
+    let mut last = f64::INFINITY;
+    for rounds in [0, 1, 4] {
+        let tree = binary::build(&primitives, Leaves::Blocks, rounds);
+        let nodes = binary_nodes(&tree);
+        let measure = visits::Visits::new(&tree.bounds());
+        let visits: f64 = nodes.iter().map(|node| f64::from(measure.of(&node.bounds))).sum();
+        assert!(visits < last, "{rounds} rounds: {visits} after {last}");
+        last = visits;
+        let options = BuildOptions { reinsertion_rounds: rounds, ..BuildOptions::default() };
+        WideBvh::new(&primitives, &options).unwrap().validate();
+    }
+    let options = BuildOptions { reinsertion_rounds: 101, ..BuildOptions::default() };
+    assert!(WideBvh::new(&primitives, &options).is_err());
+}
+
+#[test]
+fn reinsertions_end_where_all_boxes_are_alike() {
+    let mut alike = Primitives::default();
+    for i in 0..30_000 {
+        let [x, y, z] = [i % 7, i % 11, i % 13].map(|k| 1e-3 * k as f32);
+        alike.positions.extend([Vec3::new(x, 0.0, y), Vec3::new(1.0, 1.0 + y, z), Vec3::new(z, 1.0, 1.0 + x)]);
+        alike.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+    }
+    let options = BuildOptions { reinsertion_rounds: 20, ..BuildOptions::default() };
+    let tree = WideBvh::new(&alike, &options).unwrap();
+    tree.validate();
+    assert_eq!(tree.summary().references, 30_000);
+}
+
+#[test]
+fn walls_that_fit_a_block_may_stand_apart() {
+    // Floor, ceiling and two sides of a low hall: any two parts of them are as large as the hall.
+    let corner = |i: usize| Vec3::from(std::array::from_fn(|axis| [9.0, 2.0, 9.0][axis] * (i >> axis & 1) as f32));
+    let mut hall = Primitives { positions: (0..8).map(corner).collect(), ..Primitives::default() };
+    for [a, b, c, d] in [[0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]] {
+        hall.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    let tree = binary::build(&hall, Leaves::Blocks, 0);
+    let nodes = binary_nodes(&tree);
+    let flat = nodes.iter().filter(|node| node.count == 2 && node.bounds.size().min_element() < 0.1).count();
+    assert_eq!(flat, 4);
 }
 
 /// Groups of sixteen rays side by side: a camera's, mirrored ones, shadows, and some that must not run together.
