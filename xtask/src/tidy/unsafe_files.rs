@@ -29,7 +29,11 @@ const EMBREE_TEST: (&str, &str) = ("benches/peers/rays/src/engines/embree.rs", "
 /// Without the setting memory grows from pass to pass.
 const ALLOCATOR_TEST: (&str, &str) = ("crates/cli/tests/memory.rs", "memory_stays_as_predicted_over_many_passes");
 
+/// Arrays hold what was written to them.
+const HUGE_TEST: (&str, &str) = ("crates/accel/src/huge_array.rs", "arrays_hold_what_they_were_given");
+
 const KERNELS: &[Kernel] = &[
+    Kernel { path: "crates/accel/src/huge_array.rs", twin_test: HUGE_TEST },
     Kernel { path: "benches/peers/rays/src/engines/embree.rs", twin_test: EMBREE_TEST },
     Kernel { path: "crates/cli/src/allocator.rs", twin_test: ALLOCATOR_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },
@@ -40,6 +44,10 @@ const KERNELS: &[Kernel] = &[
     Kernel { path: "crates/accel/src/structures/brute_force/kernels/avx512.rs", twin_test: BRUTE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx2.rs", twin_test: WIDE_TWIN_TEST },
     Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/avx512.rs", twin_test: WIDE_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/eight.rs", twin_test: WIDE_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/four.rs", twin_test: WIDE_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/sixteen/avx2.rs", twin_test: WIDE_TWIN_TEST },
+    Kernel { path: "crates/accel/src/structures/wide_bvh/kernels/sixteen/avx512.rs", twin_test: WIDE_TWIN_TEST },
     Kernel {
         path: "crates/profile/src/ticks.rs",
         twin_test: ("crates/profile/src/ticks.rs", "ticks_run_as_fast_as_the_clock"),

@@ -4,6 +4,7 @@
 use super::binary::{BinaryNode, BinaryTree, PARALLEL_PRIMS, Place};
 use super::collapse::Leaves;
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
+use crate::huge_array::HugeArray;
 use arrayvec::ArrayVec;
 use photinus_geometry::Primitives;
 use rayon::prelude::*;
@@ -11,9 +12,9 @@ use rayon::prelude::*;
 /// The arrays of a wide tree.
 pub struct WideArrays {
     /// Nodes; the root is the first.
-    pub nodes: Vec<Node>,
+    pub nodes: HugeArray<Node>,
     /// Triangle blocks; the first is empty.
-    pub blocks: Vec<TriangleBlock>,
+    pub blocks: HugeArray<TriangleBlock>,
     /// Ids of leaves that are not blocks.
     pub ids: Vec<u32>,
     /// Levels of nodes.
@@ -48,7 +49,7 @@ struct Drafts {
 /// Collapses `tree`; `None` where an array outgrows its index.
 pub fn collapse(tree: &BinaryTree, primitives: &Primitives) -> Option<WideArrays> {
     if tree.is_empty() {
-        let (nodes, blocks) = (vec![Node::empty()], vec![TriangleBlock::empty()]);
+        let (nodes, blocks) = (HugeArray::new(1, |_| Node::empty()), HugeArray::new(1, |_| TriangleBlock::empty()));
         return Some(WideArrays { nodes, blocks, ids: Vec::new(), levels: 1 });
     }
     let writer = Writer { tree, primitives };
@@ -59,8 +60,8 @@ pub fn collapse(tree: &BinaryTree, primitives: &Primitives) -> Option<WideArrays
         return None;
     }
     Some(WideArrays {
-        nodes: drafts.nodes.par_iter().with_min_len(64).map(|draft| writer.node(draft)).collect(),
-        blocks: drafts.blocks.par_iter().with_min_len(64).map(|range| writer.block(*range)).collect(),
+        nodes: HugeArray::new(drafts.nodes.len(), |i| writer.node(&drafts.nodes[i])),
+        blocks: HugeArray::new(drafts.blocks.len(), |i| writer.block(drafts.blocks[i])),
         ids: drafts.ids,
         levels: drafts.levels,
     })

@@ -18,6 +18,7 @@ mod summary;
 mod traverse;
 mod visits;
 
+use crate::huge_array::HugeArray;
 use crate::list::leaf_tester;
 use crate::options::{BuildError, BuildOptions, check};
 use crate::structure::{RayCounters, Structure, StructureSummary};
@@ -44,8 +45,8 @@ struct WideBvh {
     bounds: Aabb,
     levels: u32,
     stack_places: usize,
-    nodes: Vec<Node>,
-    blocks: Vec<TriangleBlock>,
+    nodes: HugeArray<Node>,
+    blocks: HugeArray<TriangleBlock>,
     ids: Vec<u32>,
     tester: Box<dyn LeafTester>,
     kernel: Chosen,

@@ -12,6 +12,9 @@ use photinus_profile::ticks;
 /// Most packets that walk together: an eight times eight pixels' worth.
 const BUNDLE: usize = 4;
 
+/// Bundles whose turn comes so much later are asked for, as far as it takes to tell whether they run together.
+const AHEAD: usize = 2;
+
 /// Rays of a bundle, by packet.
 type Rays = [u16; BUNDLE];
 
@@ -234,6 +237,10 @@ impl WideBvh {
         let mut done = Vec::new();
         let mut walk: Option<PacketWalk<K>> = None;
         for (number, rays) in groups.chunks(BUNDLE).enumerate() {
+            for group in groups.iter().skip((number + AHEAD) * BUNDLE).take(BUNDLE) {
+                kernel.prefetch((&raw const group[0]).cast(), 1);
+                kernel.prefetch((&raw const group[PACKET - 1]).cast(), 1);
+            }
             if !rays.iter().any(|rays| are_alike(&rays[0], &rays[PACKET - 1])) {
                 continue;
             }

@@ -22,6 +22,9 @@ use photinus_profile::ticks;
 /// Rays under way at a time.
 pub const SLOTS: usize = 32;
 
+/// Rays whose turn comes so much later are asked for.
+const AHEAD: usize = 16;
+
 /// Places that a stack needs in a tree with so many levels of nodes: for the end, for all but one of the children of
 /// every node on the way, and for a whole node to be written.
 pub fn stack_places(levels: u32) -> usize {
@@ -195,6 +198,7 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             }
             let i = self.next;
             self.next += 1;
+            self.kernel.prefetch(self.rays.as_ptr().wrapping_add(i + AHEAD).cast(), 1);
             let slot = &mut self.slots[usize::from(index) % SLOTS];
             let ray = &self.rays[i];
             if slot.setup.set(ray, &self.tree.bounds) {
@@ -219,7 +223,8 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         slot.child = child;
         let kind = child.kind();
         let (start, size) = self.places[kind];
-        self.kernel.prefetch(start.wrapping_add(child.index() * size));
+        // As long as a block; nodes are shorter.
+        self.kernel.prefetch(start.wrapping_add(child.index() * size), size_of::<TriangleBlock>() / 64);
         self.states.push(kind, index);
     }
 

@@ -205,8 +205,8 @@ impl Kernel for Avx2 {
     }
 
     #[inline(always)]
-    fn prefetch(self, start: *const u8) {
-        for line in 0..5 {
+    fn prefetch(self, start: *const u8, lines: usize) {
+        for line in 0..lines {
             // SAFETY: a prefetch reads nothing that the program could notice, at any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line).cast()) };
         }

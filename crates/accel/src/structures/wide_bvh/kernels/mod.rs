@@ -58,8 +58,8 @@ pub trait Kernel: Copy {
     /// The rays' components by ray, in the order in which a ray holds them.
     fn components(self, rays: &[Ray; PACKET]) -> [Self::Sixteen; 8];
 
-    /// Asks for the five cache lines from `start`, a node or a block, to be near soon.
-    fn prefetch(self, start: *const u8);
+    /// Asks for so many cache lines from `start` on to be near soon.
+    fn prefetch(self, start: *const u8, lines: usize);
 }
 
 /// Four doubles.

@@ -168,5 +168,5 @@ impl Kernel for Scalar {
     }
 
     #[inline(always)]
-    fn prefetch(self, _start: *const u8) {}
+    fn prefetch(self, _start: *const u8, _lines: usize) {}
 }
