@@ -18,12 +18,13 @@ const AHEAD: usize = 2;
 /// Rays of a bundle, by packet.
 type Rays = [u16; BUNDLE];
 
-/// A child that waits: which rays may enter it, and from where on.
+/// A child that waits: where it stands, and where the beam enters it.
 #[derive(Clone, Copy)]
 struct Waiting {
-    rays: Rays,
     entry: f32,
     child: Child,
+    parent: Child,
+    slot: usize,
 }
 
 /// Packets under way.
@@ -42,7 +43,7 @@ struct PacketWalk<'a, K: Kernel> {
 impl<'a, K: Kernel> PacketWalk<'a, K> {
     /// Walks of packets through `tree`.
     fn new(tree: &'a WideBvh, kernel: K) -> Self {
-        let nothing = Waiting { rays: [0; BUNDLE], entry: 0.0, child: Child::END };
+        let nothing = Waiting { entry: 0.0, child: Child::END, parent: Child::END, slot: 0 };
         Self {
             tree,
             tree_size: (tree.bounds.max - tree.bounds.min).max_element(),
@@ -77,13 +78,11 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     #[inline(always)]
     fn trace<const ANY: bool, const COUNT: bool>(&mut self, rays: &[[Ray; PACKET]], counters: &mut RayCounters) {
         let begun = if COUNT { ticks() } else { 0 };
-        let mut all = [0; BUNDLE];
-        all[..self.count].fill(u16::MAX);
-        self.stack[0] = Waiting { rays: all, entry: self.beam.t_min, child: Child::node(0) };
+        self.stack[0] = Waiting { entry: self.beam.t_min, child: Child::node(0), parent: Child::END, slot: 0 };
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let Waiting { rays: reached, entry, child } = self.stack[top];
+            let Waiting { entry, child, parent, slot } = self.stack[top];
             // False too where all rays have ended.
             if !(entry <= self.beam.t_max) {
                 continue;
@@ -91,13 +90,13 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             match child.kind() {
                 NODE => {
                     if COUNT {
-                        let visits = reached.iter().map(|rays| u64::from(rays.count_ones()));
-                        counters.traversal.nodes_visited += visits.sum::<u64>();
+                        counters.traversal.nodes_visited += (self.count * PACKET) as u64;
                     }
-                    top = self.visit_node(child, reached, top);
+                    top = self.visit_node(child, top);
                 }
                 BLOCK => {
                     let tests_begun = if COUNT { ticks() } else { 0 };
+                    let reached = self.enter(parent, slot);
                     self.visit_block::<ANY, COUNT>(child, reached, counters);
                     if COUNT {
                         counters.ticks.tests += ticks().wrapping_sub(tests_begun);
@@ -105,6 +104,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                     }
                 }
                 _ => {
+                    let reached = self.enter(parent, slot);
                     self.visit_ids::<ANY, COUNT>(rays, child, reached, counters);
                     for packet in &mut self.packets[self.first..self.first + self.count] {
                         packet.shorten(self.kernel);
@@ -118,9 +118,19 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         }
     }
 
-    /// Puts the children that any ray enters on the stack, from far to near, and returns its new height.
+    /// Rays that may enter the leaf in a slot of a node.
     #[inline(always)]
-    fn visit_node(&mut self, child: Child, rays: Rays, mut top: usize) -> usize {
+    fn enter(&self, parent: Child, slot: usize) -> Rays {
+        let mut rays = [0; BUNDLE];
+        for p in 0..self.count {
+            rays[p] = self.packets[self.first + p].enter(self.kernel, &self.tree.nodes[parent.index()], slot);
+        }
+        rays
+    }
+
+    /// Puts the children that the beam enters on the stack, from far to near, and returns its new height.
+    #[inline(always)]
+    fn visit_node(&mut self, child: Child, mut top: usize) -> usize {
         let node = &self.tree.nodes[child.index()];
         let mut entered = BeamSlots { slots: [0; WIDTH], entries: [0.0; WIDTH] };
         let count = self.kernel.beam(&self.beam, node, &mut entered);
@@ -128,16 +138,8 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             let slot = entered.slots[i] as usize % WIDTH;
             let waiting = &mut self.stack[top];
             (waiting.child, waiting.entry) = (node.children[slot], entered.entries[i]);
-            waiting.rays = [0; BUNDLE];
-            let mut any = 0;
-            for p in 0..self.count {
-                if rays[p] != 0 {
-                    let packet = &self.packets[self.first + p];
-                    waiting.rays[p] = rays[p] & packet.enter(self.kernel, node, slot);
-                    any |= waiting.rays[p];
-                }
-            }
-            top += usize::from(any != 0);
+            (waiting.parent, waiting.slot) = (child, slot);
+            top += 1;
         }
         top
     }
@@ -238,8 +240,7 @@ impl WideBvh {
         let mut walk: Option<PacketWalk<K>> = None;
         for (number, rays) in groups.chunks(BUNDLE).enumerate() {
             for group in groups.iter().skip((number + AHEAD) * BUNDLE).take(BUNDLE) {
-                kernel.prefetch((&raw const group[0]).cast(), 1);
-                kernel.prefetch((&raw const group[PACKET - 1]).cast(), 1);
+                kernel.prefetch((&raw const group[0]).cast(), PACKET / 2);
             }
             if !rays.iter().any(|rays| are_alike(&rays[0], &rays[PACKET - 1])) {
                 continue;
