@@ -187,7 +187,9 @@ impl Packet {
         }
         let shear = [x / z, y / z];
         self.bounds.shear = [shear[0].extremes(), shear[1].extremes()];
-        self.bounds.origin = [ox.extremes(), oy.extremes(), oz.extremes()];
+        for k in 0..3 {
+            self.bounds.origin[k] = extremes(origin[k], rays[0].origin[k]);
+        }
         if !self.bounds.are_close(tree_size) {
             return false;
         }
@@ -206,7 +208,9 @@ impl Packet {
             near.store(&mut self.near_inv[k]);
             far.store(&mut self.far_inv[k]);
             origin[k].store(&mut self.origin[k]);
-            (self.beam.near_inv[k], self.beam.far_inv[k]) = (near.extremes(), far.extremes());
+            let [low, high] = inv.extremes();
+            self.beam.near_inv[k] = [low * (1.0 - SLAB_SLACK), high * (1.0 - SLAB_SLACK)];
+            self.beam.far_inv[k] = [low * (1.0 + SLAB_SLACK), high * (1.0 + SLAB_SLACK)];
             is_finite &= self.beam.far_inv[k].iter().all(|inv| inv.is_finite());
         }
         shear[0].store(&mut self.shear[0]);
@@ -220,8 +224,9 @@ impl Packet {
         let (low, high) = reach(kernel, t_min, t_max, z);
         low.store(&mut self.reach_low);
         high.store(&mut self.reach_high);
-        self.reach = [low.extremes()[0], high.extremes()[1]];
-        (self.beam.t_min, self.beam.t_max) = (t_min.extremes()[0], t_max.extremes()[1]);
+        self.reach = [extremes(low, self.reach_low[0])[0], extremes(high, self.reach_high[0])[1]];
+        self.beam.t_min = extremes(t_min, rays[0].t_min)[0];
+        self.beam.t_max = extremes(t_max, rays[0].t_max)[1];
         is_finite
     }
 
@@ -285,6 +290,13 @@ impl Packet {
         self.beam.t_max = zeros.load(&self.t_max).extremes()[1];
         self.reach = [zeros.load(&self.reach_low).extremes()[0], zeros.load(&self.reach_high).extremes()[1]];
     }
+}
+
+/// The least and the greatest of all, of which `first` is one: most often they are all the same.
+#[inline(always)]
+fn extremes<S: Sixteen>(x: S, first: f32) -> [f32; 2] {
+    let all = x.all(first);
+    if x.le(all) & all.le(x) == u16::MAX { [first; 2] } else { x.extremes() }
 }
 
 /// What [`Reach`] says of each ray; all run the same way along the third axis, of which `z` are the

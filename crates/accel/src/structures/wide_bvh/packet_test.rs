@@ -76,14 +76,15 @@ impl Packet {
             ties &= ties - 1;
         }
         t_new.select(beats, t_best).store(&mut self.best_t);
-        alpha.select(beats, zeros.load(&self.best_alpha)).store(&mut self.best_alpha);
-        beta.select(beats, zeros.load(&self.best_beta)).store(&mut self.best_beta);
         zeros.all(f32::from_bits(prim)).select(beats, zeros.load(&self.best_prim)).store(&mut self.best_prim);
         if ANY {
-            self.end(kernel, hit)
-        } else {
-            self.set_ends(kernel, beats, t_new)
+            // Of any hits nobody asks where they are.
+            self.end(kernel, hit);
+            return hit;
         }
+        alpha.select(beats, zeros.load(&self.best_alpha)).store(&mut self.best_alpha);
+        beta.select(beats, zeros.load(&self.best_beta)).store(&mut self.best_beta);
+        self.set_ends(kernel, beats, t_new);
         hit
     }
 }

@@ -2,7 +2,7 @@
 
 use super::WideBvh;
 use super::kernels::Kernel;
-use super::layout::{BLOCK, Child, NODE, WIDTH};
+use super::layout::{BLOCK, Child, NODE, Node, TriangleBlock, WIDTH};
 use super::packet::{Beam, BeamSlots, PACKET, Packet, are_alike, common_beam};
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
@@ -139,6 +139,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             let waiting = &mut self.stack[top];
             (waiting.child, waiting.entry) = (node.children[slot], entered.entries[i]);
             (waiting.parent, waiting.slot) = (child, slot);
+            self.kernel.prefetch(self.tree.address(waiting.child), size_of::<TriangleBlock>() / 64);
             top += 1;
         }
         top
@@ -225,6 +226,16 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
 }
 
 impl WideBvh {
+    /// Where a node or a block of triangles lies; nowhere in particular for others.
+    #[inline(always)]
+    fn address(&self, child: Child) -> *const u8 {
+        let (start, size) = match child.kind() {
+            NODE => (self.nodes.as_ptr().cast::<u8>(), size_of::<Node>()),
+            _ => (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>()),
+        };
+        start.wrapping_add(child.index() * size)
+    }
+
     /// Traces the rays that run together in packets, hands out their hits, and says of each group of [`PACKET`] whether
     /// it was one.
     #[inline(always)]
