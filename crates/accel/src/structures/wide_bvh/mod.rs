@@ -1,6 +1,7 @@
 //! The default structure: a tree of eight-wide nodes with triangles in blocks of eight, traversed with vector
 //! instructions chosen at run time.
 
+mod any_hit;
 mod binary;
 mod bins;
 mod candidates;

@@ -9,6 +9,7 @@
 //! worth a visit.
 
 use super::WideBvh;
+use super::any_hit::{Lore, Way};
 use super::candidates::{Candidates, TOGETHER, choose};
 use super::kernels::{Kernel, Lanes, Reach};
 use super::layout::{BLOCK, Child, END, IDS, NODE, Node, TriangleBlock, WIDTH};
@@ -46,8 +47,8 @@ struct Slot {
     bottom: usize,
     /// The place above the last that is filled.
     top: usize,
-    /// Whether it is at the leaf that ended another ray, before all others.
-    is_guess: bool,
+    /// How a ray for which any hit will do looks for it.
+    way: Way,
 }
 
 const IDLE: Slot = Slot {
@@ -58,7 +59,7 @@ const IDLE: Slot = Slot {
     ray: 0,
     bottom: 0,
     top: 0,
-    is_guess: false,
+    way: Way::PLAIN,
 };
 
 /// The stacks of all slots: children that wait, and where the ray enters them.
@@ -104,30 +105,6 @@ impl Stacks {
     }
 }
 
-/// The leaf that last ended a ray for which any hit will do: what is between a lamp and one place is between it and the next
-/// (Haines and Greenberg, "The Light Buffer: A Shadow-Testing Accelerator", 1986, remember it for each lamp).
-struct Occluder {
-    block: Child,
-    /// How well it did lately, up to [`Self::MOST`].
-    trust: u32,
-}
-
-impl Occluder {
-    const MOST: u32 = 16;
-
-    /// Whether the ray of this number in the batch begins there: all rays while it does well, else one of eight.
-    #[inline(always)]
-    fn is_worth_a_try(&self, ray: usize) -> bool {
-        (self.block != Child::END) & ((self.trust > 0) | ray.is_multiple_of(8))
-    }
-
-    /// Takes note of a try. A hit saves about as much as three tries cost.
-    #[inline(always)]
-    fn note(&mut self, is_hit: bool) {
-        self.trust = if is_hit { (self.trust + 3).min(Self::MOST) } else { self.trust.saturating_sub(1) };
-    }
-}
-
 /// The slots by the kind of their next child.
 struct States {
     slots: [[u8; SLOTS]; 4],
@@ -152,7 +129,7 @@ struct Walk<'a, K: Kernel, F> {
     tree: &'a WideBvh,
     kernel: K,
     rays: &'a [Ray],
-    occluder: Occluder,
+    lore: Lore,
     /// Groups of rays that ran as packets, from the first.
     done: Vec<bool>,
     next: usize,
@@ -184,15 +161,15 @@ impl WideBvh {
         let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
         let ids = (self.ids.as_ptr().cast::<u8>(), size_of::<u32>());
         let places = [nodes, nodes, blocks, ids];
-        let occluder = Occluder { block: Child::END, trust: 0 };
+        let lore = Lore::default();
         let mut walk =
-            Walk { tree: self, kernel, rays, occluder, done, next: 0, slots, stacks, candidates, places, states, set };
+            Walk { tree: self, kernel, rays, lore, done, next: 0, slots, stacks, candidates, places, states, set };
         // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
         // What is set up once for a batch stands before them: the batches that are counted are shorter than most.
         let begun = if COUNT { ticks() } else { 0 };
         walk.start::<ANY>();
         while walk.states.lens != [0; 4] {
-            walk.visit_nodes::<COUNT>(counters);
+            walk.visit_nodes::<ANY, COUNT>(counters);
             let tests_begun = if COUNT { ticks() } else { 0 };
             walk.visit_blocks::<ANY, COUNT>(counters);
             if walk.states.lens[IDS] > 0 {
@@ -244,11 +221,15 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
                 slot.child = Child::node(0);
                 slot.ray = i;
                 slot.top = slot.bottom + 1;
-                if ANY && self.occluder.is_worth_a_try(i) {
-                    self.stacks.children[slot.top] = Child::node(0);
-                    (slot.child, slot.top, slot.is_guess) = (self.occluder.block, slot.top + 1, true);
-                    self.states.push(BLOCK, index);
-                    return;
+                if ANY {
+                    slot.way = self.lore.way(i);
+                    slot.setup.octant ^= slot.way.turn();
+                    if let Some(block) = self.lore.guess(slot.way) {
+                        self.stacks.children[slot.top] = slot.child;
+                        (slot.child, slot.top) = (block, slot.top + 1);
+                        self.states.push(BLOCK, index);
+                        return;
+                    }
                 }
                 self.states.push(NODE, index);
                 return;
@@ -272,7 +253,7 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
     }
 
     #[inline(always)]
-    fn visit_nodes<const COUNT: bool>(&mut self, counters: &mut RayCounters) {
+    fn visit_nodes<const ANY: bool, const COUNT: bool>(&mut self, counters: &mut RayCounters) {
         let (indices, len) = self.states.take(NODE);
         if COUNT {
             counters.traversal.nodes_visited += len as u64;
@@ -281,6 +262,9 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             let slot = &mut self.slots[usize::from(index) % SLOTS];
             let node = &self.tree.nodes[slot.child.index()];
             let top = slot.top;
+            if ANY {
+                slot.way.nodes += 1;
+            }
             let count = self.kernel.node(&slot.setup, node, slot.t_max, self.stacks.lanes(top));
             self.pop(index, top + count);
         }
@@ -362,14 +346,8 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
     fn leave_leaf<const ANY: bool>(&mut self, index: u8) {
         let slot = &mut self.slots[usize::from(index) % SLOTS];
         if ANY {
-            let is_hit = slot.best.is_hit();
-            if slot.is_guess {
-                self.occluder.note(is_hit);
-                slot.is_guess = false;
-            }
-            if is_hit && slot.child.kind() == BLOCK {
-                self.occluder.block = slot.child;
-            }
+            let leaf = if slot.child.kind() == BLOCK { Some(slot.child) } else { None };
+            self.lore.note_leaf(&mut slot.way, leaf, slot.best.is_hit());
         }
         let top = match ANY {
             true if slot.best.is_hit() => slot.bottom + 1,
@@ -386,6 +364,9 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         for &index in &indices[..len] {
             let slot = &self.slots[usize::from(index) % SLOTS];
             (self.set)(slot.ray, slot.best);
+            if ANY {
+                self.lore.note_end(slot.way);
+            }
             self.fill::<ANY>(index);
         }
     }
