@@ -23,6 +23,7 @@ type Build = fn(&Mesh, &Arguments) -> Result<Box<dyn Engine>, String>;
 /// All engines: names and builds. A name ends with what is special about the mode.
 pub const ENGINES: &[(&str, Build)] = &[
     ("photinus", photinus::build),
+    ("photinus-quick", photinus::build_quickly),
     ("embree-robust", embree::robust),
     ("embree-fast", embree::fast),
     ("embree-robust-16", embree::robust_packets),

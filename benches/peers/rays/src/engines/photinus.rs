@@ -11,9 +11,18 @@ const BATCH: usize = 1024;
 
 struct Ours(Box<dyn Structure>);
 
-/// Builds the tree.
+/// Builds the tree as renders do.
 pub fn build(mesh: &Mesh, _: &Arguments) -> Result<Box<dyn Engine>, String> {
-    let structure = photinus_accel::build(DEFAULT_STRUCTURE, mesh.primitives.clone(), &BuildOptions::default());
+    build_with(mesh, &BuildOptions::default())
+}
+
+/// Builds the tree without reinsertions, which are what others' builds do without.
+pub fn build_quickly(mesh: &Mesh, _: &Arguments) -> Result<Box<dyn Engine>, String> {
+    build_with(mesh, &BuildOptions { reinsertion_rounds: 0, ..BuildOptions::default() })
+}
+
+fn build_with(mesh: &Mesh, options: &BuildOptions) -> Result<Box<dyn Engine>, String> {
+    let structure = photinus_accel::build(DEFAULT_STRUCTURE, mesh.primitives.clone(), options);
     Ok(Box::new(Ours(structure.map_err(|error| error.to_string())?)))
 }
 
