@@ -134,7 +134,7 @@ pub fn build(
 }
 
 /// The method that `options` name.
-fn method(options: &BuildOptions) -> Result<&'static MethodInfo, BuildError> {
+pub(crate) fn method(options: &BuildOptions) -> Result<&'static MethodInfo, BuildError> {
     find_method(&options.method).ok_or_else(|| BuildError::UnknownMethod {
         name: options.method.clone(),
         known: METHODS.iter().map(|m| m.name).collect::<Vec<_>>().join(", "),

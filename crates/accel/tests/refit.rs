@@ -8,7 +8,17 @@ use photinus_geometry::{Hit, Primitives, Ray, Vec3};
 use std::sync::Arc;
 
 /// Members that can be fitted.
-const FITTED: &[&str] = &["binned-bvh", "bkd-tree", "bih", "ellipsoid-bvh", "sphere-bvh", "box-bvh", "two-level"];
+const FITTED: &[&str] = &[
+    "wide-bvh",
+    "binned-bvh",
+    "spatial-split-bvh",
+    "bkd-tree",
+    "bih",
+    "ellipsoid-bvh",
+    "sphere-bvh",
+    "box-bvh",
+    "two-level",
+];
 
 fn built(name: &str, primitives: &Primitives) -> Box<dyn Structure> {
     build(name, Arc::new(primitives.clone()), &BuildOptions::default()).unwrap()

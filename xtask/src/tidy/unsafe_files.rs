@@ -1,4 +1,4 @@
-//! `unsafe` is for SIMD kernels, the processor's clock, others' libraries and settings that only the C library has: each file that holds any
+//! `unsafe` is for SIMD kernels, the processor's clock, huge pages, others' libraries and settings that only the C library has: each file that holds any
 //! is listed with the test that compares a kernel with its scalar twin, or that sees what the code does.
 
 use super::Finding;

@@ -7,12 +7,13 @@ mod spatial;
 
 use crate::hierarchy::object_build::MAX_DEPTH;
 use crate::hierarchy::rule::{Rule, reference_limit, split_alpha};
+use crate::hierarchy::shape::Shape;
 use crate::hierarchy::volume::Volume;
 use crate::hierarchy::volume_tree::VolumeTree;
 use crate::laboratory::{LeafVisit, Leaves};
 use crate::list::laboratory;
 use crate::options::{BuildError, BuildOptions};
-use crate::structure::{Structure, StructureSummary};
+use crate::structure::{RefitError, Structure, StructureSummary};
 use photinus_geometry::{Aabb, Primitives, Ray};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -30,6 +31,7 @@ const REFERENCE_LIMIT: f64 = 4.0;
 /// The tree.
 struct SpatialSplitBvh {
     tree: VolumeTree<Aabb, { MAX_DEPTH + 2 }>,
+    shape: Shape,
     cost_ratio: f64,
 }
 
@@ -42,7 +44,8 @@ impl SpatialSplitBvh {
     fn new(primitives: &Primitives, options: &BuildOptions) -> Result<Self, BuildError> {
         let (rule, alpha, limit) =
             (Rule::new(options)?, split_alpha(options)?, reference_limit(options, REFERENCE_LIMIT)?);
-        Ok(Self { tree: VolumeTree::new(build::build(primitives, rule, alpha, limit)), cost_ratio: rule.cost_ratio })
+        let tree = VolumeTree::new(build::build(primitives, rule, alpha, limit));
+        Ok(Self { tree, shape: Shape::of(primitives), cost_ratio: rule.cost_ratio })
     }
 }
 
@@ -61,6 +64,13 @@ impl Leaves for SpatialSplitBvh {
     /// The cost is that of the heuristic, in triangle tests: nodes count for the ratio of the costs.
     fn summary(&self) -> StructureSummary {
         self.tree.summary(NAME, self.cost_ratio)
+    }
+
+    /// Parts of primitives become whole ones again.
+    fn refit(&mut self, primitives: &Primitives) -> Result<(), RefitError> {
+        let bounds = self.shape.moved(primitives, &self.tree.refs, NAME)?;
+        self.tree.refit_boxes(&bounds);
+        Ok(())
     }
 }
 

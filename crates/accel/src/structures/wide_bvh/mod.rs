@@ -14,15 +14,17 @@ mod packet;
 mod packet_test;
 mod packet_walk;
 mod ray_setup;
+mod refit;
 mod reinsert;
 mod summary;
 mod traverse;
 mod visits;
 
+use crate::hierarchy::shape::Shape;
 use crate::huge_array::HugeArray;
-use crate::list::leaf_tester;
+use crate::list::method;
 use crate::options::{BuildError, BuildOptions, check};
-use crate::structure::{RayCounters, Structure, StructureSummary};
+use crate::structure::{RayCounters, RefitError, Structure, StructureSummary};
 use collapse::Leaves;
 use dispatch::Chosen;
 use layout::{Node, TriangleBlock};
@@ -50,6 +52,9 @@ struct WideBvh {
     blocks: HugeArray<TriangleBlock>,
     ids: Vec<u32>,
     tester: Box<dyn LeafTester>,
+    /// Prepares the tester anew for primitives that moved.
+    retest: fn(&Primitives) -> Box<dyn LeafTester>,
+    shape: Shape,
     kernel: Chosen,
 }
 
@@ -62,11 +67,11 @@ impl WideBvh {
     fn new(primitives: &Primitives, options: &BuildOptions) -> Result<Self, BuildError> {
         // The blocks hold the triangles of the fused method; the tester is left with the spheres.
         let fused = options.method == <Woop as RtiMethod<f32>>::NAME;
-        let tester = if fused { sphere_tester(primitives) } else { leaf_tester(primitives, options)? };
+        let retest = if fused { sphere_tester } else { method(options)?.leaf_tester };
         let leaves = if fused { Leaves::Blocks } else { Leaves::Ids };
         let rounds = options.reinsertion_rounds;
         check("the number of rounds of reinsertions", rounds, rounds <= MAX_ROUNDS, "0 to 100")?;
-        let tree = binary::build(primitives, leaves, rounds);
+        let (tree, shape) = rayon::join(|| binary::build(primitives, leaves, rounds), || Shape::of(primitives));
         let bounds = tree.bounds();
         let arrays =
             emit::collapse(&tree, primitives).ok_or(BuildError::TooManyPrimitives { count: primitives.len() })?;
@@ -77,7 +82,9 @@ impl WideBvh {
             nodes: arrays.nodes,
             blocks: arrays.blocks,
             ids: arrays.ids,
-            tester,
+            tester: retest(primitives),
+            retest,
+            shape,
             kernel: Chosen::new(options.kernel),
         })
     }
@@ -106,6 +113,10 @@ impl Structure for WideBvh {
 
     fn summary(&self) -> StructureSummary {
         summary::summary(self)
+    }
+
+    fn refit(&mut self, primitives: &Primitives) -> Result<(), RefitError> {
+        self.fit(primitives)
     }
 }
 
