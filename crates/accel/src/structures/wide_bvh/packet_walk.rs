@@ -15,6 +15,14 @@ const BUNDLE: usize = 4;
 /// Bundles whose turn comes so much later are asked for, as far as it takes to tell whether they run together.
 const AHEAD: usize = 2;
 
+/// What a beam's visit of a node costs, and a packet's of a leaf, in visits of a node by a single ray; and what a ray's share of
+/// both may come to, which is about what a single ray pays in a scene of some depth.
+const NODE_WORK: usize = 1;
+const LEAF_WORK: usize = 4;
+const MOST_WORK: usize = 12;
+/// After bundles that were given up so many go alone at most before the next is tried.
+const MOST_ALONE: usize = 8;
+
 /// Rays of a bundle, by packet.
 type Rays = [u16; BUNDLE];
 
@@ -74,13 +82,19 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         true
     }
 
-    /// Finds the hits of the chosen packets as single walks would.
+    /// Finds the hits of the chosen packets as single walks would; false where that is given up, as their beam meets so much
+    /// that each ray had better walk alone.
     #[inline(always)]
-    fn trace<const ANY: bool, const COUNT: bool>(&mut self, rays: &[[Ray; PACKET]], counters: &mut RayCounters) {
+    fn trace<const ANY: bool, const COUNT: bool>(
+        &mut self,
+        rays: &[[Ray; PACKET]],
+        counters: &mut RayCounters,
+    ) -> bool {
         let begun = if COUNT { ticks() } else { 0 };
         self.stack[0] = Waiting { entry: self.beam.t_min, child: Child::node(0), parent: Child::END, slot: 0 };
         let mut top = 1;
-        while top > 0 {
+        let mut work = 0;
+        while top > 0 && work <= self.count * PACKET * MOST_WORK {
             top -= 1;
             let Waiting { entry, child, parent, slot } = self.stack[top];
             // False too where all rays have ended.
@@ -92,11 +106,13 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                     if COUNT {
                         counters.traversal.nodes_visited += (self.count * PACKET) as u64;
                     }
+                    work += NODE_WORK;
                     top = self.visit_node(child, top);
                 }
                 BLOCK => {
                     let tests_begun = if COUNT { ticks() } else { 0 };
                     let reached = self.enter(parent, slot);
+                    work += LEAF_WORK * reached.iter().filter(|rays| **rays != 0).count();
                     self.visit_block::<ANY, COUNT>(child, reached, counters);
                     if COUNT {
                         counters.ticks.tests += ticks().wrapping_sub(tests_begun);
@@ -116,6 +132,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         if COUNT {
             counters.ticks.total += ticks().wrapping_sub(begun);
         }
+        top == 0
     }
 
     /// Rays that may enter the leaf in a slot of a node.
@@ -249,6 +266,8 @@ impl WideBvh {
         let (groups, _) = rays.as_chunks::<PACKET>();
         let mut done = Vec::new();
         let mut walk: Option<PacketWalk<K>> = None;
+        // Bundles that go alone after the next that is given up, and that still go alone.
+        let (mut doubt, mut alone) = (0, 0);
         for (number, rays) in groups.chunks(BUNDLE).enumerate() {
             for group in groups.iter().skip((number + AHEAD) * BUNDLE).take(BUNDLE) {
                 kernel.prefetch((&raw const group[0]).cast(), PACKET / 2);
@@ -257,15 +276,28 @@ impl WideBvh {
                 continue;
             }
             let walk = walk.get_or_insert_with(|| PacketWalk::new(self, kernel));
-            let are_packets = walk.set(rays);
+            if alone > 0 {
+                alone -= 1;
+                continue;
+            }
+            let mut are_packets = walk.set(rays);
+            let (mut tried, mut given_up) = (false, false);
             if are_packets == [true; BUNDLE] && walk.choose(0, BUNDLE) {
-                walk.trace::<ANY, COUNT>(rays, counters);
+                tried = true;
+                given_up = !walk.trace::<ANY, COUNT>(rays, counters);
+                are_packets = [!given_up; BUNDLE];
             } else {
-                for p in (0..BUNDLE).filter(|p| are_packets[*p]) {
-                    if walk.choose(p, 1) {
-                        walk.trace::<ANY, COUNT>(rays, counters);
+                for p in 0..BUNDLE {
+                    if are_packets[p] && walk.choose(p, 1) {
+                        tried = true;
+                        are_packets[p] = walk.trace::<ANY, COUNT>(rays, counters);
+                        given_up |= !are_packets[p];
                     }
                 }
+            }
+            if tried {
+                doubt = if given_up { (2 * doubt + 1).min(MOST_ALONE) } else { 0 };
+                alone = doubt;
             }
             done.resize(number * BUNDLE, false);
             done.extend(are_packets);
