@@ -1,8 +1,7 @@
 //! Arrays on huge pages: what rays read here and there all over, more than the processor knows the small pages of.
 //!
-//! A walk through a tree of 18 MB on pages of 4 KiB waits for their addresses as long as for a tenth to a quarter of its
-//! time, and how long depends on where they happen to lie. The system is asked for huge pages (madvise(2),
-//! MADV_HUGEPAGE), and where it has none the array is as good as any.
+//! The system is asked for huge pages (madvise(2), MADV_HUGEPAGE), so that fewer addresses have to be looked up; where it
+//! has none the array is as good as any.
 
 use rayon::prelude::*;
 use std::alloc::{Layout, alloc, dealloc, handle_alloc_error};
