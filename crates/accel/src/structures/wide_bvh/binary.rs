@@ -135,6 +135,9 @@ pub fn build(primitives: &Primitives, leaves: Leaves, rounds: u32) -> BinaryTree
     tree
 }
 
+/// The pieces of a subtree, and its costs.
+type Subtree = (Vec<Vec<BinaryNode>>, Costs);
+
 /// What is the same for all subtrees.
 struct Builder {
     visits: Visits,
@@ -146,13 +149,7 @@ struct Builder {
 
 impl Builder {
     /// Builds a subtree on all threads: its pieces and costs.
-    fn large(
-        &self,
-        prims: &mut [BuildPrim],
-        first: u32,
-        depth: u32,
-        extents: &Extents,
-    ) -> (Vec<Vec<BinaryNode>>, Costs) {
+    fn large(&self, prims: &mut [BuildPrim], first: u32, depth: u32, extents: &Extents) -> Subtree {
         if prims.len() < PARALLEL_PRIMS {
             let mut nodes = Vec::with_capacity(prims.len() / 2);
             let costs = self.small(prims, first, depth, extents, &mut nodes);
@@ -166,11 +163,7 @@ impl Builder {
             || self.large(left, first, depth + 1, &Extents::of(left)),
             || self.large(right, right_first, depth + 1, &Extents::of(right)),
         );
-        let bounds = extents.bounds.aabb();
-        let visits = self.visits.of(&bounds);
-        let (costs, plan) = plan(visits, f32::INFINITY, &a.1, &b.1);
-        let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
-        ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
+        self.joined(extents.bounds.aabb(), first, count, a, b)
     }
 
     /// Lays out a subtree of `linked` and plans it: its pieces and costs. Takes its primitives from `old` to `prims`, which
@@ -182,7 +175,7 @@ impl Builder {
         old: &[BuildPrim],
         prims: &mut [BuildPrim],
         first: u32,
-    ) -> (Vec<Vec<BinaryNode>>, Costs) {
+    ) -> Subtree {
         let children = linked.children(index).filter(|_| prims.len() >= PARALLEL_PRIMS);
         let Some([a, b]) = children else {
             let mut nodes = Vec::with_capacity(prims.len() / 2);
@@ -195,10 +188,14 @@ impl Builder {
             || self.reordered(linked, a, old, left, first),
             || self.reordered(linked, b, old, right, first + left_count),
         );
-        let bounds = linked.node(index).bounds;
-        let (costs, plan) = plan(self.visits.of(&bounds), f32::INFINITY, &a.1, &b.1);
-        let node = BinaryNode { bounds, first, count, second: 1 + a.0.len() as u32, plan };
-        ([vec![vec![node]], a.0, b.0].into_iter().flatten().collect(), costs)
+        self.joined(linked.node(index).bounds, first, count, a, b)
+    }
+
+    /// Two subtrees below a node that is a piece by itself, and no leaf.
+    fn joined(&self, bounds: Aabb, first: u32, count: u32, (a, a_costs): Subtree, (b, b_costs): Subtree) -> Subtree {
+        let (costs, plan) = plan(self.visits.of(&bounds), f32::INFINITY, &a_costs, &b_costs);
+        let node = BinaryNode { bounds, first, count, second: 1 + a.len() as u32, plan };
+        ([vec![vec![node]], a, b].into_iter().flatten().collect(), costs)
     }
 
     /// The same of a piece, appended to `nodes`.
