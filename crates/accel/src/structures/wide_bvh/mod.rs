@@ -10,6 +10,7 @@ mod dispatch;
 mod emit;
 mod kernels;
 mod layout;
+mod pace;
 mod packet;
 mod packet_test;
 mod packet_walk;
@@ -28,6 +29,7 @@ use crate::structure::{RayCounters, RefitError, Structure, StructureSummary};
 use collapse::Leaves;
 use dispatch::Chosen;
 use layout::{Node, TriangleBlock};
+use pace::Habit;
 use photinus_geometry::{Aabb, Hit, Primitives, Ray};
 use photinus_intersect::methods::woop::Woop;
 use photinus_intersect::{LeafTester, RtiMethod, sphere_tester};
@@ -56,6 +58,8 @@ struct WideBvh {
     retest: fn(&Primitives) -> Box<dyn LeafTester>,
     shape: Shape,
     kernel: Chosen,
+    /// Of rays for which the nearest hit counts, and of those for which any will do.
+    habits: [Habit; 2],
 }
 
 /// See [`crate::build`].
@@ -86,6 +90,7 @@ impl WideBvh {
             retest,
             shape,
             kernel: Chosen::new(options.kernel),
+            habits: Default::default(),
         })
     }
 }

@@ -13,6 +13,7 @@ use super::any_hit::{Lore, Way};
 use super::candidates::{Candidates, TOGETHER, choose};
 use super::kernels::{Kernel, Lanes, Reach};
 use super::layout::{BLOCK, Child, END, IDS, NODE, Node, TriangleBlock, WIDTH};
+use super::pace::Pace;
 use super::packet::PACKET;
 use super::ray_setup::RaySetup;
 use crate::structure::RayCounters;
@@ -21,7 +22,7 @@ use photinus_intersect::LeafWork;
 use photinus_profile::ticks;
 
 /// Rays under way at a time.
-pub const SLOTS: usize = 32;
+pub const SLOTS: usize = 64;
 
 /// Rays whose turn comes so much later are asked for.
 const AHEAD: usize = 16;
@@ -133,6 +134,7 @@ struct Walk<'a, K: Kernel, F> {
     /// Groups of rays that ran as packets, from the first.
     done: Vec<bool>,
     next: usize,
+    pace: Pace<'a>,
     slots: [Slot; SLOTS],
     stacks: Stacks,
     candidates: Candidates,
@@ -159,16 +161,18 @@ impl WideBvh {
         let candidates = Candidates::NONE;
         let nodes = (self.nodes.as_ptr().cast::<u8>(), size_of::<Node>());
         let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
-        let ids = (self.ids.as_ptr().cast::<u8>(), size_of::<u32>());
+        let ids = (self.ids.as_ptr().cast::<u8>(), 64);
         let places = [nodes, nodes, blocks, ids];
         let lore = Lore::default();
+        let pace = Pace::new(&self.habits[usize::from(ANY)], rays.len());
         let mut walk =
-            Walk { tree: self, kernel, rays, lore, done, next: 0, slots, stacks, candidates, places, states, set };
+            Walk { tree: self, kernel, rays, lore, done, next: 0, pace, slots, stacks, candidates, places, states, set };
         // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
         // What is set up once for a batch stands before them: the batches that are counted are shorter than most.
         let begun = if COUNT { ticks() } else { 0 };
         walk.start::<ANY>();
         while walk.states.lens != [0; 4] {
+            walk.pace.step(walk.next);
             walk.visit_nodes::<ANY, COUNT>(counters);
             let tests_begun = if COUNT { ticks() } else { 0 };
             walk.visit_blocks::<ANY, COUNT>(counters);
@@ -247,8 +251,12 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
         slot.child = child;
         let kind = child.kind();
         let (start, size) = self.places[kind];
-        // As long as a block; nodes are shorter.
-        self.kernel.prefetch(start.wrapping_add(child.index() * size), size_of::<TriangleBlock>() / 64);
+        if self.pace.is_early {
+            // All lines of a node; those of a block are one more.
+            let start = start.wrapping_add(child.index() * size);
+            self.kernel.prefetch(start, size_of::<Node>() / 64);
+            self.kernel.prefetch(start.wrapping_add(size - 64), 1);
+        }
         self.states.push(kind, index);
     }
 
