@@ -66,8 +66,9 @@ pub fn mesh(mesh: &Mesh, arguments: &Arguments, rows: &mut Vec<Row>) {
                 }
             }
         }
-        for ((name, _), (values, agreed)) in engines.iter().zip(results) {
-            rows.push(row(set.name, name, values, agreed.unwrap_or_else(|why| why)));
+        for ((name, engine), (values, agreed)) in engines.iter().zip(results) {
+            let work = engine.work(set).map_or_else(String::new, |work| format!("; {work}"));
+            rows.push(row(set.name, name, values, agreed.unwrap_or_else(|why| why) + &work));
         }
     }
 }

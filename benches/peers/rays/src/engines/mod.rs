@@ -6,6 +6,7 @@ mod photinus;
 
 use crate::Arguments;
 use crate::meshes::Mesh;
+use crate::sets::Set;
 use photinus_geometry::{Hit, Ray};
 
 /// An engine with its structure over a mesh.
@@ -15,6 +16,11 @@ pub trait Engine: Sync {
 
     /// Whether anything is hit; false where the engine knows no such question.
     fn any(&self, rays: &[Ray], occluded: &mut [bool]) -> bool;
+
+    /// What rays meet on the way, in words, where the engine counts it.
+    fn work(&self, _set: &Set) -> Option<String> {
+        None
+    }
 }
 
 /// Builds an engine's structure.

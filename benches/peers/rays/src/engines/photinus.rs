@@ -3,7 +3,8 @@
 use super::Engine;
 use crate::Arguments;
 use crate::meshes::Mesh;
-use photinus_accel::{BuildOptions, DEFAULT_STRUCTURE, Structure};
+use crate::sets::Set;
+use photinus_accel::{BuildOptions, DEFAULT_STRUCTURE, RayCounters, Structure};
 use photinus_geometry::{Hit, Ray};
 
 /// Rays of a batch: a tile's.
@@ -38,5 +39,20 @@ impl Engine for Ours {
             self.0.any_hit(rays, occluded);
         }
         true
+    }
+
+    fn work(&self, set: &Set) -> Option<String> {
+        let mut counters = RayCounters::default();
+        let (mut hits, mut occluded) = (vec![Hit::MISS; BATCH], vec![false; BATCH]);
+        for rays in set.rays.chunks(BATCH) {
+            match set.any {
+                true => self.0.any_hit_counted(rays, &mut occluded[..rays.len()], &mut counters),
+                false => self.0.closest_hit_counted(rays, &mut hits[..rays.len()], &mut counters),
+            }
+        }
+        let (walk, test) = (&counters.traversal, &counters.intersect);
+        let [nodes, leaves, tests, hits] = [walk.nodes_visited, walk.leaves_visited, test.tests, test.hits]
+            .map(|count| count as f64 / set.rays.len() as f64);
+        Some(format!("{nodes:.2} nodes, {leaves:.2} leaves, {tests:.1} tests, {hits:.2} hits a ray"))
     }
 }
