@@ -172,13 +172,16 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         let block = &self.tree.blocks[child.index()];
         let len = block.len();
         let mut hits = 0;
+        // All packets first: what is left to test is known late, and a branch that waits for it holds up the next packet.
+        let mut lanes = [0; BUNDLE];
         for p in 0..self.count {
-            if reached[p] == 0 {
-                continue;
+            if reached[p] != 0 {
+                lanes[p] = self.kernel.packet_block(&self.packets[self.first + p], block);
             }
+        }
+        for p in 0..self.count {
             let packet = &mut self.packets[self.first + p];
-            let mut lanes = self.kernel.packet_block(packet, block);
-            let mut hit = 0;
+            let (mut lanes, mut hit) = (lanes[p], 0);
             while lanes != 0 {
                 let found = packet.test::<K, ANY>(self.kernel, block, lanes.trailing_zeros() as usize, reached[p]);
                 hits += u64::from(found.count_ones());
