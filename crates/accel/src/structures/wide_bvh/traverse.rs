@@ -165,8 +165,21 @@ impl WideBvh {
         let places = [nodes, nodes, blocks, ids];
         let lore = Lore::default();
         let pace = Pace::new(&self.habits[usize::from(ANY)], rays.len());
-        let mut walk =
-            Walk { tree: self, kernel, rays, lore, done, next: 0, pace, slots, stacks, candidates, places, states, set };
+        let mut walk = Walk {
+            tree: self,
+            kernel,
+            rays,
+            lore,
+            done,
+            next: 0,
+            pace,
+            slots,
+            stacks,
+            candidates,
+            places,
+            states,
+            set,
+        };
         // Nodes, tests and the ends of rays take turns, each for all rays of its state: between them stand the stamps.
         // What is set up once for a batch stands before them: the batches that are counted are shorter than most.
         let begun = if COUNT { ticks() } else { 0 };
