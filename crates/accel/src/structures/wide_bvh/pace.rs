@@ -133,7 +133,7 @@ mod tests {
             assert_eq!(paces[0], [true, true, false, false, !slow, !slow]);
             assert!(paces[1..4].iter().all(|ways| *ways == [!slow; 6]), "{paces:?}");
             assert_eq!(paces[4][..4], [!slow, !slow, slow, slow]);
-            assert!(!Pace::new(&habit, 511).is_early == slow && habit.batches.load(Ordering::Relaxed) == 8);
+            assert!(Pace::new(&habit, 511).is_early != slow && habit.batches.load(Ordering::Relaxed) == 8);
         }
     }
 }
