@@ -52,6 +52,8 @@ pub struct Pace<'a> {
     /// Whether to ask early now.
     pub is_early: bool,
     is_usually_early: bool,
+    /// Rays taken up one by one: those of packets say nothing.
+    pub rays: usize,
     /// The next of [`UNTIL`] to come.
     step: usize,
     /// When the last came, and after how many rays.
@@ -66,20 +68,20 @@ impl<'a> Pace<'a> {
         let is_early = habit.ratio() <= 1.0;
         let tries = rays >= FEWEST && habit.batches.fetch_add(1, Ordering::Relaxed).is_multiple_of(ONE_OF);
         let step = if tries { 0 } else { UNTIL.len() };
-        Self { habit, is_early, is_usually_early: is_early, step, begun: (0, 0), usual: 0.0 }
+        Self { habit, is_early, is_usually_early: is_early, rays: 0, step, begun: (0, 0), usual: 0.0 }
     }
 
-    /// Goes on after so many rays have been taken up.
+    /// Goes on with the rays that have been taken up.
     #[inline(always)]
-    pub fn step(&mut self, rays: usize) {
-        if self.step < UNTIL.len() && rays >= UNTIL[self.step] {
-            self.turn(rays);
+    pub fn step(&mut self) {
+        if self.step < UNTIL.len() && self.rays >= UNTIL[self.step] {
+            self.turn();
         }
     }
 
     #[inline(never)]
-    fn turn(&mut self, rays: usize) {
-        let now = ticks();
+    fn turn(&mut self) {
+        let (now, rays) = (ticks(), self.rays);
         let each = now.wrapping_sub(self.begun.0) as f32 / (rays - self.begun.1).max(1) as f32;
         match self.step {
             0 => {}
@@ -120,7 +122,8 @@ mod tests {
                 .map(|_| {
                     let mut pace = Pace::new(&habit, 1024);
                     let ways = [0, 128, 256, 300, 384, 1024].map(|rays| {
-                        pace.step(rays);
+                        pace.rays = rays;
+                        pace.step();
                         // As if one way took longer.
                         if rays == 300 {
                             pace.usual = if slow { 1e30 } else { 0.0 };

@@ -161,7 +161,7 @@ impl WideBvh {
         let candidates = Candidates::NONE;
         let nodes = (self.nodes.as_ptr().cast::<u8>(), size_of::<Node>());
         let blocks = (self.blocks.as_ptr().cast::<u8>(), size_of::<TriangleBlock>());
-        let ids = (self.ids.as_ptr().cast::<u8>(), 64);
+        let ids = (self.ids.as_ptr().cast::<u8>(), size_of::<u32>());
         let places = [nodes, nodes, blocks, ids];
         let lore = Lore::default();
         let pace = Pace::new(&self.habits[usize::from(ANY)], rays.len());
@@ -185,7 +185,7 @@ impl WideBvh {
         let begun = if COUNT { ticks() } else { 0 };
         walk.start::<ANY>();
         while walk.states.lens != [0; 4] {
-            walk.pace.step(walk.next);
+            walk.pace.step();
             walk.visit_nodes::<ANY, COUNT>(counters);
             let tests_begun = if COUNT { ticks() } else { 0 };
             walk.visit_blocks::<ANY, COUNT>(counters);
@@ -233,6 +233,7 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             let slot = &mut self.slots[usize::from(index) % SLOTS];
             let ray = &self.rays[i];
             if slot.setup.set(ray, &self.tree.bounds) {
+                self.pace.rays += 1;
                 slot.t_max = ray.t_max;
                 slot.best = Hit::MISS;
                 slot.child = Child::node(0);
@@ -268,7 +269,7 @@ impl<K: Kernel, F: FnMut(usize, Hit)> Walk<'_, K, F> {
             // All lines of a node; those of a block are one more.
             let start = start.wrapping_add(child.index() * size);
             self.kernel.prefetch(start, size_of::<Node>() / 64);
-            self.kernel.prefetch(start.wrapping_add(size - 64), 1);
+            self.kernel.prefetch(start.wrapping_add(size).wrapping_sub(64), 1);
         }
         self.states.push(kind, index);
     }
