@@ -8,6 +8,7 @@ mod candidates;
 mod collapse;
 mod dispatch;
 mod emit;
+mod frustum;
 mod kernels;
 mod layout;
 mod pace;

@@ -1,6 +1,7 @@
 //! The walk of packets through the tree: a node at a time for all rays of up to four packets.
 
 use super::WideBvh;
+use super::frustum::{Frustum, Seen};
 use super::kernels::Kernel;
 use super::layout::{BLOCK, Child, NODE, Node, TriangleBlock, WIDTH};
 use super::packet::{Beam, BeamSlots, PACKET, Packet, are_alike, common_beam};
@@ -19,7 +20,8 @@ const AHEAD: usize = 2;
 /// both may come to, which is about what a single ray pays in a scene of some depth.
 const NODE_WORK: usize = 1;
 const LEAF_WORK: usize = 4;
-const MOST_WORK: usize = 12;
+const HIT_WORK: usize = 2;
+const MOST_WORK: usize = 4;
 /// After bundles that were given up so many go alone at most before the next is tried.
 const MOST_ALONE: usize = 8;
 
@@ -45,6 +47,8 @@ struct PacketWalk<'a, K: Kernel> {
     first: usize,
     count: usize,
     beam: Beam,
+    frustum: Frustum,
+    seen: Seen,
     stack: Vec<Waiting>,
 }
 
@@ -60,6 +64,8 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             first: 0,
             count: 0,
             beam: Packet::IDLE.beam,
+            frustum: Frustum::NONE,
+            seen: Seen::NONE,
             stack: vec![nothing; tree.stack_places],
         }
     }
@@ -79,6 +85,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     fn choose(&mut self, first: usize, count: usize) -> bool {
         let Some(beam) = common_beam(&self.packets[first..first + count], self.tree_size) else { return false };
         (self.first, self.count, self.beam) = (first, count, beam);
+        self.frustum = Frustum::new(&self.packets[first..first + count]);
         true
     }
 
@@ -93,8 +100,8 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         let begun = if COUNT { ticks() } else { 0 };
         self.stack[0] = Waiting { entry: self.beam.t_min, child: Child::node(0), parent: Child::END, slot: 0 };
         let mut top = 1;
-        let mut work = 0;
-        while top > 0 && work <= self.count * PACKET * MOST_WORK {
+        let (mut work, mut most_work) = (0, self.count * PACKET * MOST_WORK / 2);
+        while top > 0 && work <= most_work {
             top -= 1;
             let Waiting { entry, child, parent, slot } = self.stack[top];
             // False too where all rays have ended.
@@ -111,9 +118,14 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                 }
                 BLOCK => {
                     let tests_begun = if COUNT { ticks() } else { 0 };
-                    let reached = self.enter(parent, slot);
-                    work += LEAF_WORK * reached.iter().filter(|rays| **rays != 0).count();
-                    self.visit_block::<ANY, COUNT>(child, reached, counters);
+                    work += LEAF_WORK;
+                    let hits = if self.frustum.is_point {
+                        self.see_block::<ANY, COUNT>(child, counters)
+                    } else {
+                        let reached = self.enter(parent, slot);
+                        self.visit_block::<ANY, COUNT>(child, reached, counters)
+                    };
+                    most_work += HIT_WORK * hits;
                     if COUNT {
                         counters.ticks.tests += ticks().wrapping_sub(tests_begun);
                         counters.ticks.pairs += 1;
@@ -168,7 +180,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         child: Child,
         reached: Rays,
         counters: &mut RayCounters,
-    ) {
+    ) -> usize {
         let block = &self.tree.blocks[child.index()];
         let len = block.len();
         let mut hits = 0;
@@ -184,7 +196,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             let (mut lanes, mut hit) = (lanes[p], 0);
             while lanes != 0 {
                 let found = packet.test::<K, ANY>(self.kernel, block, lanes.trailing_zeros() as usize, reached[p]);
-                hits += u64::from(found.count_ones());
+                hits += found.count_ones() as usize;
                 hit |= found;
                 lanes &= lanes - 1;
             }
@@ -201,8 +213,44 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             self.shorten_beam();
         }
         if COUNT {
-            counters.intersect.hits += hits;
+            counters.intersect.hits += hits as u64;
         }
+        hits
+    }
+
+    /// Tests a block for packets that start at one point, and returns how many hits there are.
+    #[inline(always)]
+    fn see_block<const ANY: bool, const COUNT: bool>(&mut self, child: Child, counters: &mut RayCounters) -> usize {
+        let block = &self.tree.blocks[child.index()];
+        let packets = &mut self.packets[self.first..self.first + self.count];
+        let all = self.seen.look(self.kernel, &self.frustum, packets, block);
+        let (mut left, mut hits, mut hit) = (all, 0, 0);
+        while left != 0 {
+            let (p, lane) = (left.trailing_zeros() as usize / WIDTH, left.trailing_zeros() as usize % WIDTH);
+            let rays = self.seen.may_hit(self.kernel, &packets[p], lane);
+            let found = if rays == 0 { 0 } else { packets[p].test::<K, ANY>(self.kernel, block, lane, rays) };
+            hits += found.count_ones() as usize;
+            hit |= u32::from(found != 0) << p;
+            left &= left - 1;
+        }
+        if hit != 0 {
+            for (p, packet) in packets.iter_mut().enumerate() {
+                if hit >> p & 1 == 1 {
+                    packet.shorten(self.kernel);
+                }
+            }
+            self.shorten_beam();
+        }
+        if COUNT {
+            let len = block.len();
+            for _ in (0..self.count).filter(|p| all >> (WIDTH * p) & 0xFF != 0) {
+                for _ in 0..PACKET {
+                    counters.add_leaf(len, LeafWork { tests: len as u32, hits: 0 });
+                }
+            }
+            counters.intersect.hits += hits as u64;
+        }
+        hits
     }
 
     /// Lets the beam end with its last ray.

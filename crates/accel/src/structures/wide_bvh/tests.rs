@@ -46,7 +46,7 @@ fn kernels() -> Vec<Kernel> {
 #[test]
 fn all_kernels_give_the_same_bits_and_the_same_work() {
     for (seed, size) in [(1, 1.0), (2, 1e-20), (3, 1e15)] {
-        let primitives = scene(seed, 2000, size);
+        let primitives = scene(seed, 1000, size);
         let rays = [rays(3000, size), grouped_rays(size)].concat();
         let run = |kernel| {
             let tree = build(primitives.clone(), &BuildOptions { kernel, ..BuildOptions::default() }).unwrap();
@@ -218,14 +218,14 @@ fn packets_find_what_single_rays_find() {
     for (seed, size) in [(1, 1.0), (2, 1e-20), (3, 1e15)] {
         let rays = grouped_rays(size);
         let (mut alone, mut together) = (vec![Hit::MISS; rays.len()], vec![Hit::MISS; rays.len()]);
-        let tree = WideBvh::new(&scene(seed, 2000, size), &BuildOptions::default()).unwrap();
+        let tree = WideBvh::new(&scene(seed, 1000, size), &BuildOptions::default()).unwrap();
         let counters = &mut RayCounters::default();
         let set = |i: usize, hit| alone[i] = hit;
         tree.trace::<_, false, false>(kernels::scalar::Scalar, &rays, Vec::new(), set, counters);
         let set = &mut |i: usize, hit| together[i] = hit;
         let done = tree.trace_packets::<_, false, false>(kernels::scalar::Scalar, &rays, set, counters);
         let groups = done.iter().filter(|done| **done).count();
-        assert!((250..580).contains(&groups), "{groups} of 600 groups ran as packets, size {size}");
+        assert!((200..580).contains(&groups), "{groups} of 600 groups ran as packets, size {size}");
         let mut hits = 0;
         for (i, (a, b)) in alone.iter().zip(&together).enumerate() {
             if done.get(i / PACKET) == Some(&true) {
@@ -233,9 +233,9 @@ fn packets_find_what_single_rays_find() {
                 hits += usize::from(a.is_hit());
             }
         }
-        assert!(hits > 1000, "{hits}");
+        assert!(hits > 500, "{hits}");
         for kernel in [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512] {
-            let tree = build(scene(seed, 2000, size), &BuildOptions { kernel, ..BuildOptions::default() }).unwrap();
+            let tree = build(scene(seed, 1000, size), &BuildOptions { kernel, ..BuildOptions::default() }).unwrap();
             let (mut hits, mut counters) = (vec![Hit::MISS; rays.len()], RayCounters::default());
             tree.closest_hit_counted(&rays, &mut hits, &mut counters);
             assert_eq!(hits, alone, "{kernel:?}");
@@ -243,6 +243,71 @@ fn packets_find_what_single_rays_find() {
             tree.any_hit(&rays, &mut occluded);
             assert!(occluded.iter().zip(&alone).all(|(any, hit)| *any == hit.is_hit()), "{kernel:?}");
             assert_eq!(counters.traversal.rays, rays.len() as u64);
+        }
+    }
+}
+
+/// Bundles of 64 rays from a point, and what they look at: triangles of all sizes, slivers, some behind or around the point,
+/// each seen by a bundle of its own from a place of its own, half of whose rays aim at its vertices and edges as exactly as
+/// floats can.
+fn looks(seed: u64, count: u32, apart: f32) -> (Arc<Primitives>, Vec<Ray>) {
+    let (mut scene, mut rays) = (Primitives::default(), Vec::new());
+    for look in 0..count {
+        let mut s = Sampler::new(seed, StreamKind::Test, 2, look);
+        let mut next = || s.next_1d();
+        let mut vec3 = || Vec3::new(next(), next(), next()) * 2.0 - 1.0;
+        let (dir, b, c, aside) = (vec3() + Vec3::splat(0.01), vec3(), vec3(), vec3());
+        let place = Vec3::new((look % 10) as f32, (look / 10 % 10) as f32, (look / 100) as f32) * apart + vec3();
+        let far = 10.0_f32.powf(1.5 * next() - 1.0);
+        let size = far * 10.0_f32.powf(-4.0 * next());
+        let c = if look % 3 == 0 { b * next() + c * 1e-4 } else { c };
+        let middle = match look % 10 {
+            0 => place - dir * size,
+            1 => place - (b + c) * (0.3 * size),
+            _ => place + dir * far,
+        };
+        let corners = [middle, middle + b * size, middle + c * size];
+        let first = scene.positions.len() as u32;
+        scene.positions.extend(corners);
+        scene.triangles.push([first, first + 1, first + 2]);
+        let spread = if look % 2 == 0 { 0.05 } else { size / far };
+        for i in 0..4 * PACKET as u32 {
+            let mut s = Sampler::new(seed, StreamKind::Test, 3, look * 64 + i);
+            let mut next = || s.next_1d();
+            let (corner, other, along) = ((next() * 3.0) as usize, (next() * 3.0) as usize, next());
+            let to = match i % 4 {
+                0 => corners[corner],
+                1 => corners[corner] + (corners[other] - corners[corner]) * along,
+                _ => middle + (Vec3::new(next(), next(), next()) * 2.0 - 1.0) * (spread * far),
+            };
+            rays.push(Ray::new(place, if look % 10 < 2 { dir + aside * (0.05 * along) } else { to - place }));
+        }
+    }
+    (Arc::new(scene), rays)
+}
+
+#[test]
+fn frustums_lose_no_hit() {
+    for (seed, apart) in [(4, 10.0), (5, 100.0), (6, 3000.0)] {
+        let (scene, rays) = looks(seed, 1000, apart);
+        for kernel in [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512] {
+            let tree = WideBvh::new(&scene, &BuildOptions { kernel, ..BuildOptions::default() }).unwrap();
+            let mut alone = vec![Hit::MISS; rays.len()];
+            let counters = &mut RayCounters::default();
+            let set = |i: usize, hit| alone[i] = hit;
+            tree.trace::<_, false, false>(kernels::scalar::Scalar, &rays, Vec::new(), set, counters);
+            let mut together = vec![Hit::MISS; rays.len()];
+            for (rays, hits) in rays.chunks(4 * PACKET).zip(together.chunks_mut(4 * PACKET)) {
+                tree.closest_hit(rays, hits);
+            }
+            for (i, (a, b)) in alone.iter().zip(&together).enumerate() {
+                assert_eq!(a, b, "ray {i} of seed {seed}, {kernel:?}: {:?}", rays[i]);
+            }
+            let set = &mut |i: usize, hit| together[i] = hit;
+            let done = tree.trace_packets::<_, false, false>(kernels::scalar::Scalar, &rays, set, counters);
+            let hits = (0..rays.len()).filter(|i| done.get(i / PACKET) == Some(&true) && alone[*i].is_hit()).count();
+            let packets = done.iter().filter(|done| **done).count();
+            assert!(packets > 800 && hits > 5000, "{packets} {hits}");
         }
     }
 }

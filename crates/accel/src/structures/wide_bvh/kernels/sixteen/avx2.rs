@@ -84,6 +84,18 @@ impl Sixteen for Two {
     }
 
     #[inline(always)]
+    fn twice(self, from: &[f32; WIDTH]) -> Self {
+        // SAFETY: `self` proves that the machine has AVX2; the load is of eight words.
+        unsafe { Self([_mm256_loadu_ps(from.as_ptr()); 2]) }
+    }
+
+    #[inline(always)]
+    fn halved(self, first: f32, second: f32) -> Self {
+        // SAFETY: `self` proves that the machine has AVX2.
+        unsafe { Self([_mm256_set1_ps(first), _mm256_set1_ps(second)]) }
+    }
+
+    #[inline(always)]
     fn load(self, from: &ByRay) -> Self {
         // SAFETY: `self` proves that the machine has AVX2; the loads are of eight words of sixteen each.
         unsafe { Self([_mm256_loadu_ps(from.as_ptr()), _mm256_loadu_ps(from.as_ptr().add(WIDTH))]) }

@@ -1,6 +1,7 @@
 //! One register of AVX-512F.
 
 use super::Sixteen;
+use crate::structures::wide_bvh::layout::WIDTH;
 use crate::structures::wide_bvh::packet::ByRay;
 use photinus_intersect::doubles::Doubles;
 use std::arch::x86_64::*;
@@ -81,6 +82,18 @@ impl Sixteen for One {
     fn all(self, x: f32) -> Self {
         // SAFETY: `self` proves that the machine has AVX-512F.
         unsafe { Self(_mm512_set1_ps(x)) }
+    }
+
+    #[inline(always)]
+    fn twice(self, from: &[f32; WIDTH]) -> Self {
+        // SAFETY: `self` proves that the machine has AVX-512F and DQ; the load is of eight words.
+        unsafe { Self(_mm512_broadcast_f32x8(_mm256_loadu_ps(from.as_ptr()))) }
+    }
+
+    #[inline(always)]
+    fn halved(self, first: f32, second: f32) -> Self {
+        // SAFETY: `self` proves that the machine has AVX-512F.
+        unsafe { Self(_mm512_mask_blend_ps(0xFF00, _mm512_set1_ps(first), _mm512_set1_ps(second))) }
     }
 
     #[inline(always)]

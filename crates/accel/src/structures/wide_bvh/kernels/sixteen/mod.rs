@@ -7,6 +7,7 @@ pub mod avx2;
 pub mod avx512;
 pub mod scalar;
 
+use crate::structures::wide_bvh::layout::WIDTH;
 use crate::structures::wide_bvh::packet::ByRay;
 use photinus_intersect::doubles::Doubles;
 use std::ops::{Add, Div, Mul, Sub};
@@ -20,6 +21,12 @@ pub trait Sixteen: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output =
 
     /// The same number for all, in the registers of `self`.
     fn all(self, x: f32) -> Self;
+
+    /// Eight numbers from memory, twice.
+    fn twice(self, from: &[f32; WIDTH]) -> Self;
+
+    /// The same number for the first eight, and another for the rest.
+    fn halved(self, first: f32, second: f32) -> Self;
 
     /// Numbers from memory, into the registers of `self`.
     fn load(self, from: &ByRay) -> Self;

@@ -1,6 +1,7 @@
 //! Plain arrays.
 
 use super::Sixteen;
+use crate::structures::wide_bvh::layout::WIDTH;
 use crate::structures::wide_bvh::packet::{ByRay, PACKET};
 use photinus_intersect::doubles::Lanes;
 use std::ops::{Add, Div, Mul, Sub};
@@ -63,6 +64,16 @@ impl Sixteen for Plain {
     #[inline(always)]
     fn all(self, x: f32) -> Self {
         Self([x; PACKET])
+    }
+
+    #[inline(always)]
+    fn twice(self, from: &[f32; WIDTH]) -> Self {
+        Self(std::array::from_fn(|i| from[i % WIDTH]))
+    }
+
+    #[inline(always)]
+    fn halved(self, first: f32, second: f32) -> Self {
+        Self(std::array::from_fn(|i| if i < WIDTH { first } else { second }))
     }
 
     #[inline(always)]
