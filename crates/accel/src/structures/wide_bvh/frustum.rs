@@ -10,6 +10,7 @@
 //! here, which makes 36umS + 36 u^2 m^2; products, sums and relative shears round by 52uS^2; 64uS(m + S) + 64 u^2 m^2 is
 //! more than all.
 
+use super::beam::Beam;
 use super::kernels::Kernel;
 use super::kernels::sixteen::Sixteen;
 use super::layout::{TriangleBlock, WIDTH};
@@ -18,59 +19,10 @@ use super::packet::{ByRay, PACKET, Packet};
 /// 64 units in the last place of numbers below one.
 const ERROR: f32 = 32.0 * f32::EPSILON;
 
-/// Where packets that walk together start, and where they go.
-#[derive(Clone, Copy)]
-pub struct Frustum {
-    /// Whether all rays start at one point.
-    pub is_point: bool,
-    /// Where, along the axes of the ray-triangle test.
-    origin: [f32; 3],
-    /// Those axes.
-    axes: [usize; 3],
-    /// Least and greatest shears of all rays.
-    shear: [[f32; 2]; 2],
-    /// How far they lie apart at most.
-    width: f32,
-    /// Whether the rays go forward along the third axis.
-    is_forward: bool,
-}
-
-impl Frustum {
-    /// Without packets.
-    pub const NONE: Self =
-        Self { is_point: false, origin: [0.0; 3], axes: [0; 3], shear: [[0.0; 2]; 2], width: 0.0, is_forward: true };
-
-    /// The frustum of packets that walk together.
-    #[inline(always)]
-    pub fn new(packets: &[Packet]) -> Self {
-        let first = &packets[0];
-        let start = first.bounds.origin.map(|[low, _]| low);
-        let mut out = Self { is_point: true, axes: first.axes, ..Self::NONE };
-        for packet in packets {
-            for k in 0..3 {
-                let [low, high] = packet.bounds.origin[k];
-                out.is_point &= (low == start[k]) & (high == start[k]);
-            }
-        }
-        out.origin = first.axes.map(|k| start[k % 3]);
-        out.is_forward = first.beam.octant >> (first.axes[2] % 3) & 1 == 0;
-        for k in 0..2 {
-            let [mut low, mut high] = first.bounds.shear[k];
-            for packet in packets {
-                let [a, b] = packet.bounds.shear[k];
-                (low, high) = (low.min(a), high.max(b));
-            }
-            out.shear[k] = [low, high];
-            out.width = out.width.max(high - low);
-        }
-        out
-    }
-}
-
 /// Eight triangles, twice: so that two packets are tested at once.
 type Twice = ByRay;
 
-/// Triangles of a block as a frustum sees them, by lane.
+/// Triangles of a block as seen from a point, by lane.
 #[repr(C, align(64))]
 pub struct Seen {
     /// A direction amid those that may hit it, as shears.
@@ -101,17 +53,26 @@ impl Seen {
         most: [0.0; PACKET],
     };
 
-    /// Looks at a block, and returns which triangles rays of these packets, at most four, may hit within their reach: a mask
+    /// Looks at a block, and returns which triangles rays of these packets, at most four, that all start at `start`, may hit within their reach: a mask
     /// of eight lanes for each packet.
     #[inline(always)]
-    pub fn look<K: Kernel>(&mut self, kernel: K, frustum: &Frustum, packets: &[Packet], block: &TriangleBlock) -> u32 {
+    pub fn look<K: Kernel>(
+        &mut self,
+        kernel: K,
+        beam: &Beam,
+        start: &[f32; 3],
+        packets: &[Packet],
+        block: &TriangleBlock,
+    ) -> u32 {
         let zeros = kernel.zeros();
-        let axes = frustum.axes.map(|k| k % 3);
+        let axes = beam.axes.map(|k| k % 3);
+        let shear = &beam.bounds.shear;
+        let beam_width = (shear[0][1] - shear[0][0]).max(shear[1][1] - shear[1][0]);
         let mut v = [[zeros; 3]; 3];
         let mut inv = [zeros; 3];
         for i in 0..3 {
             for k in 0..3 {
-                v[k][i] = zeros.twice(&block.vertices[3 * i + axes[k]]) - zeros.all(frustum.origin[k]);
+                v[k][i] = zeros.twice(&block.vertices[3 * i + axes[k]]) - zeros.all(start[k]);
             }
             inv[i] = zeros.all(1.0) / v[2][i];
         }
@@ -123,7 +84,7 @@ impl Seen {
         for k in 0..2 {
             // The first vertex, or the next direction that there is a ray of: not far from any that may hit. Of the maximum the
             // second is taken where the first is not a number.
-            let [first, last] = frustum.shear[k];
+            let [first, last] = shear[k];
             middle[k] = (v[k][0] * inv[0]).max(zeros.all(first)).min(zeros.all(last));
             let mut sheared = [zeros; 3];
             for i in 0..3 {
@@ -137,7 +98,7 @@ impl Seen {
         }
         let [x, y] = at;
         // Of triangles that are not all before the start nothing is known.
-        let nearest = if frustum.is_forward { least } else { zeros - most };
+        let nearest = if beam.is_forward { least } else { zeros - most };
         let is_before = zeros.lt(nearest);
         let tiny = zeros.all(f32::MIN_POSITIVE);
         let slack = (zeros.all(ERROR) * (far + size) + tiny) * inv[0].abs().max(inv[1].abs()).max(inv[2].abs());
@@ -147,7 +108,7 @@ impl Seen {
             high[k] = (high[k] + slack).select(is_before, zeros.all(f32::INFINITY));
             width = low[k].abs().max(high[k].abs()).max(width);
         }
-        let size = size + width.min(zeros.all(frustum.width)) * far;
+        let size = size + width.min(zeros.all(beam_width)) * far;
         let error = zeros.all(ERROR) * size * (far + size) + zeros.all(ERROR * f32::EPSILON) * far * far + tiny;
         let mut edges = [[zeros; 3]; 3];
         let mut volume = zeros;
@@ -160,7 +121,7 @@ impl Seen {
         let is_sure = doubt.lt(volume.abs()) & volume.abs().lt(zeros.all(f32::INFINITY));
         let limit = (zeros - error).select(is_sure & is_before, zeros.all(f32::NEG_INFINITY));
         let is_negative = volume.lt(zeros);
-        let is_turned = if frustum.is_forward { is_negative } else { !is_negative };
+        let is_turned = if beam.is_forward { is_negative } else { !is_negative };
         for n in 0..3 {
             for k in 0..3 {
                 edges[n][k] = (zeros - edges[n][k]).select(is_turned, edges[n][k]);

@@ -2,6 +2,7 @@
 //! instructions chosen at run time.
 
 mod any_hit;
+mod beam;
 mod binary;
 mod bins;
 mod candidates;

@@ -5,6 +5,7 @@
 //! Tracing", 2001), and bounds of the packet leave out most boxes before any ray is tested (Reshetov, Soupikov, Hurley,
 //! "Multi-Level Ray Tracing Algorithm", 2005).
 
+use super::beam::Beam;
 use super::kernels::sixteen::Sixteen;
 use super::kernels::{Kernel, Reach};
 use super::layout::{Node, WIDTH};
@@ -28,10 +29,6 @@ pub type ByRay = [f32; PACKET];
 pub struct Packet {
     /// Starts, by axis.
     pub origin: [ByRay; 3],
-    /// Reciprocal directions for entry parameters, by axis.
-    pub near_inv: [ByRay; 3],
-    /// The same for exit parameters.
-    pub far_inv: [ByRay; 3],
     /// Shears of the ray-triangle test.
     pub shear: [ByRay; 2],
     /// Smallest accepted parameters.
@@ -56,10 +53,10 @@ pub struct Packet {
     pub dir_z: ByRay,
     /// Axes of the ray-triangle test.
     pub axes: [usize; 3],
+    /// The octant of the directions, as in [`RaySetup`](super::ray_setup::RaySetup).
+    pub octant: usize,
     /// Least and greatest shears, and starts by axis.
     pub bounds: PacketBounds,
-    /// All rays together.
-    pub beam: Beam,
 }
 
 /// Least and greatest of what tells whether rays run closely together.
@@ -76,62 +73,19 @@ const NO_BOUNDS: PacketBounds = PacketBounds { shear: [[0.0; 2]; 2], origin: [[0
 impl PacketBounds {
     /// Whether rays of these bounds run closely enough together in a tree of this extent.
     #[inline(always)]
-    fn are_close(&self, tree_size: f32) -> bool {
+    pub fn are_close(&self, tree_size: f32) -> bool {
         let spread = self.shear.iter().all(|[low, high]| high - low <= MOST_SPREAD);
         spread & self.origin.iter().all(|[low, high]| high - low <= MOST_APART * tree_size)
     }
 
+    /// Bounds of both.
     #[inline(always)]
-    fn union(mut self, other: &Self) -> Self {
+    pub fn union(mut self, other: &Self) -> Self {
         for (a, b) in self.shear.iter_mut().zip(&other.shear).chain(self.origin.iter_mut().zip(&other.origin)) {
             *a = [a[0].min(b[0]), a[1].max(b[1])];
         }
         self
     }
-}
-
-/// Bounds of a packet: no ray of it enters a box earlier, or leaves one later, than the beam.
-#[derive(Clone, Copy)]
-pub struct Beam {
-    /// Places of the bounds that rays enter and leave through, and the octant, as in
-    /// [`RaySetup`](super::ray_setup::RaySetup).
-    pub near: [u32; 3],
-    /// See `near`.
-    pub far: [u32; 3],
-    /// See `near`.
-    pub octant: usize,
-    /// Starts from which entry parameters are least, by axis.
-    pub near_origin: [f32; 3],
-    /// Starts from which exit parameters are greatest.
-    pub far_origin: [f32; 3],
-    /// Least and greatest reciprocal directions for entry parameters.
-    pub near_inv: [[f32; 2]; 3],
-    /// The same for exit parameters.
-    pub far_inv: [[f32; 2]; 3],
-    /// Smallest accepted parameter of any ray.
-    pub t_min: f32,
-    /// Where the search of the last ray ends.
-    pub t_max: f32,
-}
-
-const NO_BEAM: Beam = Beam {
-    near: [0; 3],
-    far: [0; 3],
-    octant: 0,
-    near_origin: [0.0; 3],
-    far_origin: [0.0; 3],
-    near_inv: [[0.0; 2]; 3],
-    far_inv: [[0.0; 2]; 3],
-    t_min: 0.0,
-    t_max: 0.0,
-};
-
-/// Slots of a node that a beam enters, and where.
-pub struct BeamSlots {
-    /// The slots.
-    pub slots: [u32; WIDTH],
-    /// Entry parameters, none greater than that of any ray.
-    pub entries: [f32; WIDTH],
 }
 
 /// Whether the last of sixteen rays runs close to the first: most that do not run together are told apart there.
@@ -144,8 +98,6 @@ impl Packet {
     /// Without rays.
     pub const IDLE: Self = Self {
         origin: [[0.0; PACKET]; 3],
-        near_inv: [[0.0; PACKET]; 3],
-        far_inv: [[0.0; PACKET]; 3],
         shear: [[0.0; PACKET]; 2],
         t_min: [0.0; PACKET],
         t_max: [0.0; PACKET],
@@ -158,8 +110,8 @@ impl Packet {
         best_prim: [f32::from_bits(Hit::MISS.prim); PACKET],
         dir_z: [1.0; PACKET],
         axes: [0; 3],
+        octant: 0,
         bounds: NO_BOUNDS,
-        beam: NO_BEAM,
     };
 
     /// Takes up sixteen rays; false where they had better go alone: too far from each other, of several octants or
@@ -193,25 +145,9 @@ impl Packet {
         if !self.bounds.are_close(tree_size) {
             return false;
         }
-        self.beam.octant = 0;
-        let mut is_finite = true;
+        self.octant = (0..3).fold(0, |octant, k| octant | usize::from(rays[0].dir[k] < 0.0) << k);
         for k in 0..3 {
-            let backward = rays[0].dir[k] < 0.0;
-            self.beam.near[k] = (2 * k as u32 + u32::from(backward)) * WIDTH as u32;
-            self.beam.far[k] = (2 * k as u32 + 1 - u32::from(backward)) * WIDTH as u32;
-            self.beam.octant |= usize::from(backward) << k;
-            // Rounding is monotonic: what holds for the ends holds for all between, to the bit.
-            let [low, high] = self.bounds.origin[k];
-            (self.beam.near_origin[k], self.beam.far_origin[k]) = if backward { (low, high) } else { (high, low) };
-            let inv = zeros.all(1.0) / dir[k];
-            let (near, far) = (inv * zeros.all(1.0 - SLAB_SLACK), inv * zeros.all(1.0 + SLAB_SLACK));
-            near.store(&mut self.near_inv[k]);
-            far.store(&mut self.far_inv[k]);
             origin[k].store(&mut self.origin[k]);
-            let [low, high] = inv.extremes();
-            self.beam.near_inv[k] = [low * (1.0 - SLAB_SLACK), high * (1.0 - SLAB_SLACK)];
-            self.beam.far_inv[k] = [low * (1.0 + SLAB_SLACK), high * (1.0 + SLAB_SLACK)];
-            is_finite &= self.beam.far_inv[k].iter().all(|inv| inv.is_finite());
         }
         shear[0].store(&mut self.shear[0]);
         shear[1].store(&mut self.shear[1]);
@@ -225,22 +161,24 @@ impl Packet {
         low.store(&mut self.reach_low);
         high.store(&mut self.reach_high);
         self.reach = [extremes(low, self.reach_low[0])[0], extremes(high, self.reach_high[0])[1]];
-        self.beam.t_min = extremes(t_min, rays[0].t_min)[0];
-        self.beam.t_max = extremes(t_max, rays[0].t_max)[1];
-        is_finite
+        true
     }
 
     /// Rays that may enter the box in a slot of a node, as a mask.
     #[inline(always)]
-    pub fn enter<K: Kernel>(&self, kernel: K, node: &Node, slot: usize) -> u16 {
+    pub fn enter<K: Kernel>(&self, kernel: K, beam: &Beam, node: &Node, slot: usize) -> u16 {
         let zeros = kernel.zeros();
-        let (mut entry, mut exit) = (zeros.load(&self.t_min), zeros.load(&self.t_max));
-        for axis in 0..3 {
+        let [kx, ky, kz] = self.axes.map(|k| k % 3);
+        let one = zeros.all(beam.sign());
+        let inv = [one / zeros.load(&self.shear[0]), one / zeros.load(&self.shear[1]), one];
+        let (low, high) = (zeros.load(&self.reach_low), zeros.load(&self.reach_high));
+        let (mut entry, mut exit) = if beam.is_forward { (low, high) } else { (zeros - high, zeros - low) };
+        for (k, inv) in [kx, ky, kz].into_iter().zip(inv) {
             let at = |place: u32| zeros.all(node.bounds[place as usize / WIDTH % 6][slot % WIDTH]);
-            let origin = zeros.load(&self.origin[axis]);
-            let t_near = (at(self.beam.near[axis]) - origin) * zeros.load(&self.near_inv[axis]);
-            let t_far = (at(self.beam.far[axis]) - origin) * zeros.load(&self.far_inv[axis]);
-            (entry, exit) = (t_near.max(entry), t_far.min(exit));
+            let origin = zeros.load(&self.origin[k]);
+            let near = (at(beam.near[k]) - origin) * (inv * zeros.all(1.0 - SLAB_SLACK));
+            let far = (at(beam.far[k]) - origin) * (inv * zeros.all(1.0 + SLAB_SLACK));
+            (entry, exit) = (near.max(entry), far.min(exit));
         }
         entry.le(exit)
     }
@@ -287,7 +225,6 @@ impl Packet {
     #[inline(always)]
     pub fn shorten<K: Kernel>(&mut self, kernel: K) {
         let zeros = kernel.zeros();
-        self.beam.t_max = zeros.load(&self.t_max).extremes()[1];
         self.reach = [zeros.load(&self.reach_low).extremes()[0], zeros.load(&self.reach_high).extremes()[1]];
     }
 }
@@ -308,30 +245,4 @@ fn reach<K: Kernel>(kernel: K, t_min: K::Sixteen, t_max: K::Sixteen, z: K::Sixte
     let (low, high) = if z.lt(zeros) == u16::MAX { (b, a) } else { (a, b) };
     let (slack, least) = (zeros.all(SLAB_SLACK), zeros.all(f32::MIN_POSITIVE));
     (low - (low.abs() * slack + least), high + (high.abs() * slack + least))
-}
-
-/// The beam of several packets; `None` where they had better go one by one.
-#[inline(always)]
-pub fn common_beam(packets: &[Packet], tree_size: f32) -> Option<Beam> {
-    let (first, rest) = packets.split_first()?;
-    let (mut beam, mut bounds) = (first.beam, first.bounds);
-    for packet in rest {
-        if packet.beam.octant != beam.octant || packet.axes != first.axes {
-            return None;
-        }
-        bounds = bounds.union(&packet.bounds);
-        for axis in 0..3 {
-            let forward = beam.near[axis] < beam.far[axis];
-            let later = |a: f32, b: f32| if forward { a.max(b) } else { a.min(b) };
-            let sooner = |a: f32, b: f32| if forward { a.min(b) } else { a.max(b) };
-            let outer = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-            beam.near_origin[axis] = later(beam.near_origin[axis], packet.beam.near_origin[axis]);
-            beam.far_origin[axis] = sooner(beam.far_origin[axis], packet.beam.far_origin[axis]);
-            beam.near_inv[axis] = outer(beam.near_inv[axis], packet.beam.near_inv[axis]);
-            beam.far_inv[axis] = outer(beam.far_inv[axis], packet.beam.far_inv[axis]);
-        }
-        beam.t_min = beam.t_min.min(packet.beam.t_min);
-        beam.t_max = beam.t_max.max(packet.beam.t_max);
-    }
-    bounds.are_close(tree_size).then_some(beam)
 }

@@ -1,10 +1,11 @@
 //! The walk of packets through the tree: a node at a time for all rays of up to four packets.
 
 use super::WideBvh;
-use super::frustum::{Frustum, Seen};
+use super::beam::{Beam, BeamSlots};
+use super::frustum::Seen;
 use super::kernels::Kernel;
 use super::layout::{BLOCK, Child, NODE, Node, TriangleBlock, WIDTH};
-use super::packet::{Beam, BeamSlots, PACKET, Packet, are_alike, common_beam};
+use super::packet::{PACKET, Packet, are_alike};
 use crate::structure::RayCounters;
 use photinus_geometry::{Hit, Ray};
 use photinus_intersect::LeafWork;
@@ -47,7 +48,8 @@ struct PacketWalk<'a, K: Kernel> {
     first: usize,
     count: usize,
     beam: Beam,
-    frustum: Frustum,
+    /// Where all rays start, along the axes of the ray-triangle test, if they start at one point.
+    start: Option<[f32; 3]>,
     seen: Seen,
     stack: Vec<Waiting>,
 }
@@ -63,8 +65,8 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             packets: [Packet::IDLE; BUNDLE],
             first: 0,
             count: 0,
-            beam: Packet::IDLE.beam,
-            frustum: Frustum::NONE,
+            beam: Beam::NONE,
+            start: None,
             seen: Seen::NONE,
             stack: vec![nothing; tree.stack_places],
         }
@@ -83,9 +85,9 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     /// Whether `count` packets from `first` can walk together; they are the ones that walk next.
     #[inline(always)]
     fn choose(&mut self, first: usize, count: usize) -> bool {
-        let Some(beam) = common_beam(&self.packets[first..first + count], self.tree_size) else { return false };
+        let Some(beam) = Beam::new(&self.packets[first..first + count], self.tree_size) else { return false };
         (self.first, self.count, self.beam) = (first, count, beam);
-        self.frustum = Frustum::new(&self.packets[first..first + count]);
+        self.start = beam.point();
         true
     }
 
@@ -98,14 +100,14 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         counters: &mut RayCounters,
     ) -> bool {
         let begun = if COUNT { ticks() } else { 0 };
-        self.stack[0] = Waiting { entry: self.beam.t_min, child: Child::node(0), parent: Child::END, slot: 0 };
+        self.stack[0] = Waiting { entry: self.beam.start, child: Child::node(0), parent: Child::END, slot: 0 };
         let mut top = 1;
         let (mut work, mut most_work) = (0, self.count * PACKET * MOST_WORK / 2);
         while top > 0 && work <= most_work {
             top -= 1;
             let Waiting { entry, child, parent, slot } = self.stack[top];
             // False too where all rays have ended.
-            if !(entry <= self.beam.t_max) {
+            if !(entry <= self.beam.end) {
                 continue;
             }
             match child.kind() {
@@ -119,11 +121,12 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                 BLOCK => {
                     let tests_begun = if COUNT { ticks() } else { 0 };
                     work += LEAF_WORK;
-                    let hits = if self.frustum.is_point {
-                        self.see_block::<ANY, COUNT>(child, counters)
-                    } else {
-                        let reached = self.enter(parent, slot);
-                        self.visit_block::<ANY, COUNT>(child, reached, counters)
+                    let hits = match self.start {
+                        Some(start) => self.see_block::<ANY, COUNT>(&start, child, counters),
+                        None => {
+                            let reached = self.enter(parent, slot);
+                            self.visit_block::<ANY, COUNT>(child, reached, counters)
+                        }
                     };
                     most_work += HIT_WORK * hits;
                     if COUNT {
@@ -137,7 +140,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                     for packet in &mut self.packets[self.first..self.first + self.count] {
                         packet.shorten(self.kernel);
                     }
-                    self.shorten_beam();
+                    self.beam.shorten(&self.packets[self.first..self.first + self.count]);
                 }
             }
         }
@@ -152,7 +155,8 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
     fn enter(&self, parent: Child, slot: usize) -> Rays {
         let mut rays = [0; BUNDLE];
         for p in 0..self.count {
-            rays[p] = self.packets[self.first + p].enter(self.kernel, &self.tree.nodes[parent.index()], slot);
+            rays[p] =
+                self.packets[self.first + p].enter(self.kernel, &self.beam, &self.tree.nodes[parent.index()], slot);
         }
         rays
     }
@@ -210,7 +214,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             }
         }
         if hits > 0 {
-            self.shorten_beam();
+            self.beam.shorten(&self.packets[self.first..self.first + self.count]);
         }
         if COUNT {
             counters.intersect.hits += hits as u64;
@@ -220,10 +224,15 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
 
     /// Tests a block for packets that start at one point, and returns how many hits there are.
     #[inline(always)]
-    fn see_block<const ANY: bool, const COUNT: bool>(&mut self, child: Child, counters: &mut RayCounters) -> usize {
+    fn see_block<const ANY: bool, const COUNT: bool>(
+        &mut self,
+        start: &[f32; 3],
+        child: Child,
+        counters: &mut RayCounters,
+    ) -> usize {
         let block = &self.tree.blocks[child.index()];
         let packets = &mut self.packets[self.first..self.first + self.count];
-        let all = self.seen.look(self.kernel, &self.frustum, packets, block);
+        let all = self.seen.look(self.kernel, &self.beam, start, packets, block);
         let (mut left, mut hits, mut hit) = (all, 0, 0);
         while left != 0 {
             let (p, lane) = (left.trailing_zeros() as usize / WIDTH, left.trailing_zeros() as usize % WIDTH);
@@ -239,7 +248,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
                     packet.shorten(self.kernel);
                 }
             }
-            self.shorten_beam();
+            self.beam.shorten(&self.packets[self.first..self.first + self.count]);
         }
         if COUNT {
             let len = block.len();
@@ -251,15 +260,6 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             counters.intersect.hits += hits as u64;
         }
         hits
-    }
-
-    /// Lets the beam end with its last ray.
-    #[inline(always)]
-    fn shorten_beam(&mut self) {
-        self.beam.t_max = f32::NEG_INFINITY;
-        for packet in &self.packets[self.first..self.first + self.count] {
-            self.beam.t_max = self.beam.t_max.max(packet.beam.t_max);
-        }
     }
 
     /// Tests primitives one by one. Apart from the rest, and so without a kernel: its instructions are only known there.

@@ -1,7 +1,8 @@
 //! What the kernels with registers of eight lanes share: tests of a packet's beam, and rays by component.
 
+use crate::structures::wide_bvh::beam::Beam;
 use crate::structures::wide_bvh::layout::{Node, TriangleBlock, WIDTH};
-use crate::structures::wide_bvh::packet::{Beam, Packet};
+use crate::structures::wide_bvh::packet::Packet;
 use photinus_geometry::Ray;
 use std::arch::x86_64::*;
 
@@ -16,8 +17,8 @@ pub unsafe fn beam(beam: &Beam, node: &Node) -> (__m256, __m256, __m256i) {
     unsafe {
         let spread = |x: f32| _mm256_set1_ps(x);
         let bounds = node.bounds.as_ptr().cast::<f32>();
-        let mut entry = spread(beam.t_min);
-        let mut exit = spread(beam.t_max);
+        let mut entry = spread(beam.start);
+        let mut exit = spread(beam.end);
         for axis in 0..3 {
             let near = _mm256_loadu_ps(bounds.add(beam.near[axis] as usize));
             let far = _mm256_loadu_ps(bounds.add(beam.far[axis] as usize));

@@ -15,8 +15,9 @@ mod four;
 pub mod scalar;
 pub mod sixteen;
 
+use super::beam::{Beam, BeamSlots};
 use super::layout::{Child, Node, TriangleBlock, WIDTH};
-use super::packet::{Beam, BeamSlots, PACKET, Packet};
+use super::packet::{PACKET, Packet};
 use super::ray_setup::RaySetup;
 pub use crate::reach::Reach;
 use photinus_geometry::Ray;

@@ -2,8 +2,9 @@
 
 use super::sixteen::scalar::Plain;
 use super::{Kernel, Lanes, Reach};
+use crate::structures::wide_bvh::beam::{Beam, BeamSlots};
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
-use crate::structures::wide_bvh::packet::{Beam, BeamSlots, PACKET, Packet};
+use crate::structures::wide_bvh::packet::{PACKET, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
 use photinus_geometry::{NO_HIT, Ray};
 use photinus_intersect::doubles;
@@ -94,8 +95,8 @@ impl Kernel for Scalar {
 
     #[inline(always)]
     fn beam(self, beam: &Beam, node: &Node, out: &mut BeamSlots) -> usize {
-        let mut entries = [beam.t_min; WIDTH];
-        let mut exits = [beam.t_max; WIDTH];
+        let mut entries = [beam.start; WIDTH];
+        let mut exits = [beam.end; WIDTH];
         for axis in 0..3 {
             let near = &node.bounds[beam.near[axis] as usize / WIDTH];
             let far = &node.bounds[beam.far[axis] as usize / WIDTH];
