@@ -258,8 +258,8 @@ fn looks(seed: u64, count: u32, apart: f32) -> (Arc<Primitives>, Vec<Ray>) {
         let mut vec3 = || Vec3::new(next(), next(), next()) * 2.0 - 1.0;
         let (dir, b, c, aside) = (vec3() + Vec3::splat(0.01), vec3(), vec3(), vec3());
         let place = Vec3::new((look % 10) as f32, (look / 10 % 10) as f32, (look / 100) as f32) * apart + vec3();
-        let far = 10.0_f32.powf(1.5 * next() - 1.0);
-        let size = far * 10.0_f32.powf(-4.0 * next());
+        let (u, v) = (next(), next());
+        let (far, size) = (0.1 + 3.0 * u * u * u, (0.1 + 3.0 * u * u * u) * (v * v * v * v).max(1e-4));
         let c = if look % 3 == 0 { b * next() + c * 1e-4 } else { c };
         let middle = match look % 10 {
             0 => place - dir * size,
