@@ -1,6 +1,7 @@
 //! The list of searches: what the command line, the documentation and the tests loop over.
 
-use crate::searches::{brute_force, grid, kd_balanced};
+use crate::searches::block_hash::{self, BlockHash};
+use crate::searches::{brute_force, bvh, grid, hashed_grid, kd_balanced, kd_unbalanced, kd_vvh, octree, r_tree};
 use crate::{Photon, PhotonError, Search};
 
 /// What building a search may be told.
@@ -25,23 +26,38 @@ pub struct SearchMember {
     pub name: &'static str,
     /// One sentence for help and documentation.
     pub about: &'static str,
-    builder: fn(Vec<Photon>, &BuildOptions) -> Box<dyn Search>,
+    /// Whether it finds all that it is asked for.
+    pub is_exact: bool,
+    builder: Builder,
 }
+
+/// Makes a search.
+type Builder = fn(Vec<Photon>, &BuildOptions) -> Box<dyn Search>;
 
 /// All photon searches, the default first.
 pub const SEARCHES: &[SearchMember] = &[
-    SearchMember { name: "grid", about: grid::ABOUT, builder: |p, o| Box::new(grid::Grid::new(p, o)) },
+    exact("grid", grid::ABOUT, |p, o| Box::new(grid::Grid::new(p, o))),
+    exact("kd-balanced", kd_balanced::ABOUT, |p, _| Box::new(kd_balanced::KdBalanced::new(&p))),
+    exact("kd-unbalanced", kd_unbalanced::ABOUT, |p, _| Box::new(kd_unbalanced::KdUnbalanced::build(&p))),
+    exact("kd-vvh", kd_vvh::ABOUT, |p, o| Box::new(kd_vvh::KdVvh::build(&p, o.radius()))),
+    exact("hashed-grid", hashed_grid::ABOUT, |p, o| Box::new(hashed_grid::HashedGrid::build(&p, o.radius()))),
+    exact("block-hash", block_hash::ABOUT, |p, _| Box::new(BlockHash::<true>::build(&p))),
     SearchMember {
-        name: "kd-balanced",
-        about: kd_balanced::ABOUT,
-        builder: |p, _| Box::new(kd_balanced::KdBalanced::new(&p)),
+        name: "block-hash-approximate",
+        about: block_hash::ABOUT_APPROXIMATE,
+        is_exact: false,
+        builder: |p, _| Box::new(BlockHash::<false>::build(&p)),
     },
-    SearchMember {
-        name: "brute-force",
-        about: brute_force::ABOUT,
-        builder: |p, _| Box::new(brute_force::BruteForce::new(p)),
-    },
+    exact("r-tree", r_tree::ABOUT, |p, _| Box::new(r_tree::RTree::build(&p))),
+    exact("bvh", bvh::ABOUT, |p, _| Box::new(bvh::Bvh::build(&p))),
+    exact("octree", octree::ABOUT, |p, _| Box::new(octree::Octree::build(&p))),
+    exact("brute-force", brute_force::ABOUT, |p, _| Box::new(brute_force::BruteForce::new(p))),
 ];
+
+/// A member that finds all that it is asked for.
+const fn exact(name: &'static str, about: &'static str, builder: Builder) -> SearchMember {
+    SearchMember { name, about, is_exact: true, builder }
+}
 
 /// The search that is used where none is named.
 pub const DEFAULT_SEARCH: &str = "grid";

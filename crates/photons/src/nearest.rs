@@ -37,21 +37,13 @@ impl<'a> NearestHeap<'a> {
     /// What lies farther than this is of no use.
     #[inline]
     pub(crate) fn limit(&self) -> f32 {
-        if self.heap.len() < self.k || self.k == 0 { self.r2 } else { self.heap[0].distance_sq }
+        limit(self.heap, self.k, self.r2)
     }
 
     /// Offers a neighbour.
     #[inline]
     pub(crate) fn offer(&mut self, neighbor: Neighbor) {
-        if !(neighbor.distance_sq <= self.r2) {
-            return;
-        }
-        if self.heap.len() < self.k {
-            self.heap.push(neighbor);
-            self.sift_up();
-        } else if closer(&neighbor, &self.heap[0]) {
-            sift_down(self.heap, neighbor);
-        }
+        offer(self.heap, self.k, self.r2, neighbor);
     }
 
     /// Offers a neighbour; those that are not kept but as near as the farthest kept go to `ties`.
@@ -72,25 +64,52 @@ impl<'a> NearestHeap<'a> {
         }
     }
 
-    fn sift_up(&mut self) {
-        let mut i = self.heap.len() - 1;
-        let item = self.heap[i];
-        while i > 0 {
-            let parent = (i - 1) / 2;
-            if !closer(&self.heap[parent], &item) {
-                break;
-            }
-            self.heap[i] = self.heap[parent];
-            i = parent;
-        }
-        self.heap[i] = item;
-    }
-
     /// Puts the neighbours into order of distance.
     #[inline]
     pub(crate) fn finish(self) {
         sort_by_distance(self.heap);
     }
+}
+
+/// What lies farther is of no use to a heap of at most `k` neighbours within `r2`.
+#[inline]
+pub(crate) fn limit(heap: &[Neighbor], k: usize, r2: f32) -> f32 {
+    if k == 0 {
+        -1.0
+    } else if heap.len() < k {
+        r2
+    } else {
+        heap[0].distance_sq
+    }
+}
+
+/// Offers a neighbour to such a heap.
+#[inline]
+pub(crate) fn offer(heap: &mut Vec<Neighbor>, k: usize, r2: f32, neighbor: Neighbor) {
+    if k == 0 || !(neighbor.distance_sq <= r2) {
+        return;
+    }
+    if heap.len() < k {
+        heap.push(neighbor);
+        sift_up(heap);
+    } else if closer(&neighbor, &heap[0]) {
+        sift_down(heap, neighbor);
+    }
+}
+
+/// Puts the last item of a heap where it belongs.
+fn sift_up(heap: &mut [Neighbor]) {
+    let mut i = heap.len() - 1;
+    let item = heap[i];
+    while i > 0 {
+        let parent = (i - 1) / 2;
+        if !closer(&heap[parent], &item) {
+            break;
+        }
+        heap[i] = heap[parent];
+        i = parent;
+    }
+    heap[i] = item;
 }
 
 /// Replaces the root of a max-heap by `item`.

@@ -1,7 +1,8 @@
 //! What every photon search answers.
 
+use crate::results::ResultSet;
 use crate::visiting::{gather_nearest_by_collecting, gather_nearest_counted_by_collecting};
-use crate::{Kernel, Photon};
+use crate::{Kernel, Photon, Region};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 
@@ -150,6 +151,11 @@ pub trait Search: Send + Sync {
         found: &mut Vec<(Photon, f32)>,
         counters: &mut SearchCounters,
     );
+
+    /// Adds the photons of a region to a set of results, in an order that depends on the photons and the region only, and
+    /// returns how many were tested. What lies beyond the set's [`ResultSet::limit`] may be left out. A region that is none
+    /// ([`Region::is_valid`]) holds nothing.
+    fn search(&self, region: &Region, results: &mut dyn ResultSet) -> u64;
 
     /// All photons within `radius` of `position` (closed), in ascending id; `found` is cleared first.
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>);

@@ -33,21 +33,24 @@ pub(crate) fn gather_counted_by_visiting(
 }
 
 /// Flux summed in f64.
-#[derive(Default)]
-struct Sums {
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sums {
     flux: [f64; 3],
     count: u32,
 }
 
 impl Sums {
-    fn add(&mut self, photon: &Photon, weight: f32) {
+    /// Adds a photon's flux times a weight.
+    #[inline]
+    pub(crate) fn add(&mut self, photon: &Photon, weight: f32) {
         for (sum, channel) in self.flux.iter_mut().zip(photon.flux().to_array()) {
             *sum += f64::from(channel) * f64::from(weight);
         }
         self.count += 1;
     }
 
-    fn gathered(self) -> Gathered {
+    /// Rounded.
+    pub(crate) fn gathered(self) -> Gathered {
         Gathered { flux: Vec3::from_array(self.flux.map(|c| c as f32)), count: self.count }
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
 use crate::nearest::sort_by_distance;
+use crate::results::ResultSet;
 use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
-use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
+use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Region, Search, SearchSummary};
 use photinus_geometry::Vec3;
 use photinus_profile::SearchCounters;
 
@@ -73,6 +74,19 @@ impl Search for BruteForce {
             photons_tested: self.photons.len() as u64,
             photons_found: found.len() as u64,
         };
+    }
+
+    fn search(&self, region: &Region, results: &mut dyn ResultSet) -> u64 {
+        if !region.is_valid() {
+            return 0;
+        }
+        let middle = region.middle();
+        for (id, photon) in (0u32..).zip(&self.photons) {
+            if let Some(d2) = region.holds(photon.position(), middle) {
+                results.add(id, photon, d2);
+            }
+        }
+        self.photons.len() as u64
     }
 
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {

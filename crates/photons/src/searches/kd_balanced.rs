@@ -7,8 +7,9 @@
 
 use crate::inclusion::{PreparedQuery, distance_sq, radius_sq};
 use crate::nearest::{NearestHeap, Ties};
+use crate::results::ResultSet;
 use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
-use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
+use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Region, Search, SearchSummary};
 use photinus_geometry::{Aabb, Vec3};
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
@@ -236,6 +237,19 @@ impl Search for KdBalanced {
         found.clear();
         found.extend(nearest.iter().chain(ties.all()).map(|n| (self.photon_at(n.photon as usize), n.distance_sq)));
         *counters += SearchCounters { searches: 1, photons_tested, photons_found: found.len() as u64 };
+    }
+
+    fn search(&self, region: &Region, results: &mut dyn ResultSet) -> u64 {
+        if !region.is_valid() {
+            return 0;
+        }
+        let middle = region.middle();
+        self.traverse(middle, results.limit().min(region.radius_sq()), |node, d2| {
+            if region.holds(self.nodes[node].position, middle).is_some() {
+                results.add(self.nodes[node].id(), &self.photon_at(node), d2);
+            }
+            results.limit().min(region.radius_sq())
+        })
     }
 
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {

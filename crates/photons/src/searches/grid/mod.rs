@@ -20,6 +20,7 @@ mod kernels;
 mod kth;
 mod narrow;
 mod reach;
+mod region;
 mod scalar;
 mod shared;
 mod sort;
@@ -28,7 +29,10 @@ mod table;
 mod tests;
 
 use crate::inclusion::{PreparedQuery, radius_sq};
-use crate::{BuildOptions, GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, Search, SearchSummary};
+use crate::results::ResultSet;
+use crate::{
+    BuildOptions, GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, Region, Search, SearchSummary,
+};
 use blocks::{Block, Boxes, LANES};
 use build::{Built, build};
 use candidates::Candidates;
@@ -181,6 +185,10 @@ impl Search for Grid {
             }
         });
         *counters += SearchCounters { searches: 1, photons_tested: finder.tested, photons_found: found.len() as u64 };
+    }
+
+    fn search(&self, region: &Region, results: &mut dyn ResultSet) -> u64 {
+        self.search_region(region, results)
     }
 
     fn within_radius(&self, position: Vec3, radius: f32, found: &mut Vec<Neighbor>) {
