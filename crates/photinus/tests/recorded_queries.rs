@@ -152,13 +152,19 @@ fn every_search_gives_the_recorded_answers() {
         );
         for (&(pass, kind), words) in &maps {
             let photons: Vec<Photon> = words.iter().map(|words| Photon::from_words(*words).unwrap()).collect();
-            for member in SEARCHES {
+            for member in SEARCHES.iter().filter(|member| member.is_exact) {
+                // The renderer's own in full, the slower ones in part.
+                let step = match member.name {
+                    "grid" => 1,
+                    "brute-force" => 16,
+                    _ => 8,
+                };
                 let search = member.build(photons.clone(), &SearchOptions::default()).unwrap();
                 // In the modes with one map the searches of all passes ask that of the first.
                 let of_pass = |key: BlockKey| key.pass == pass || mode != Mode::Progressive;
                 for block in blocks.iter().filter(|block| of_pass(block.key)) {
                     let searches = block.searches.iter().filter(|search| search.map == kind);
-                    for record in searches.step_by(if member.name == "brute-force" { 16 } else { 1 }) {
+                    for record in searches.step_by(step) {
                         replay(&*search, record, &format!("{scene}, {mode:?}, {}", member.name));
                     }
                 }

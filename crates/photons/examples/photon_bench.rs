@@ -154,7 +154,7 @@ fn searches(wanted: &Wanted, search: &dyn Search, queries: &[GatherQuery], order
     search.gather_counted(queries, Kernel::Epanechnikov, &mut out, &mut counters);
     let mean = |n: u64| n as f64 / queries.len() as f64;
     let (found, tested) = (mean(counters.photons_found), mean(counters.photons_tested));
-    println!("  {order:34} {found:9.1} found, {tested:.1} tested a query");
+    println!("  {order:34} {found:9.2} found, {tested:.1} tested a query");
     let kernels = [
         (Kernel::Constant, "constant"),
         (Kernel::Cone { k: 1.1 }, "cone"),

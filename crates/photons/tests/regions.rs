@@ -93,25 +93,28 @@ fn flux_accumulates_as_it_is_gathered() {
     }
 }
 
-/// An approximate member finds no photon that is not there, and most of those that are.
+/// An approximate member finds no photon that is not there, and most of those that are: in balls of the radius that it was
+/// built for.
 #[test]
 fn approximate_members_lose_little() {
     for member in SEARCHES.iter().filter(|m| !m.is_exact) {
-        let (mut found, mut missed) = (0, 0);
         for set in sets() {
             let oracle = build("brute-force", set.photons.clone(), &BuildOptions::default()).unwrap();
-            let search = member.build(set.photons.clone(), &BuildOptions::default()).unwrap();
-            for GatherQuery { position, radius, .. } in queries(&set, 60) {
+            let search = member.build(set.photons.clone(), &BuildOptions { radius_hint: set.radius }).unwrap();
+            let (mut found, mut missed) = (0, 0);
+            for GatherQuery { position, radius, .. } in queries(&set, 400) {
                 let region = Region::Sphere { center: position, radius };
                 let (all, some) = (list(&*oracle, &region), list(&*search, &region));
                 assert!(some.iter().all(|n| all.contains(n)), "{}: {region:?}", member.name);
-                if set.name == "box" {
+                if radius == set.radius {
                     found += some.len();
                     missed += all.len() - some.len();
                 }
             }
+            if set.name == "box" {
+                let loss = missed as f64 / (found + missed) as f64;
+                assert!(loss < 0.2, "{} loses {loss} of {}", member.name, found + missed);
+            }
         }
-        let loss = missed as f64 / (found + missed) as f64;
-        assert!(loss > 0.0 && loss < 0.2, "{} loses {loss} of {}", member.name, found + missed);
     }
 }

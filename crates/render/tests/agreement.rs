@@ -272,7 +272,7 @@ impl Observer for StopAfter {
 fn members_of_each_family_give_the_same_picture() {
     let settings = Settings { photons: Some(20_000), ..settings(Mode::Progressive) };
     let reference = render(&world(box_scene(0.6)), settings.clone(), 2).0;
-    for search in photinus_photons::SEARCHES {
+    for search in photinus_photons::SEARCHES.iter().filter(|search| search.is_exact) {
         let settings = Settings { search: search.name.to_owned(), ..settings.clone() };
         let found = render(&world(box_scene(0.6)), settings, 2).0;
         for (a, b) in found.iter().zip(&reference) {

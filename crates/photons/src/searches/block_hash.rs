@@ -7,6 +7,7 @@
 //! of each table that its middle lies in, and may miss what lies beyond; read whole, it looks into all buckets of the first
 //! table that the region touches, and misses nothing.
 
+use super::kd_vvh::usual_radius;
 use crate::Photon;
 use crate::index::{Index, Indexed, Scan};
 use crate::store::positions;
@@ -19,10 +20,12 @@ pub(crate) const ABOUT_APPROXIMATE: &str = "block hashing, one bucket of each ta
 const BLOCK: usize = 32;
 /// Hash tables.
 const TABLES: usize = 4;
-/// Blocks that a bucket lists on the average, if they were spread evenly.
-const BLOCKS_A_BUCKET: f64 = 4.0;
+/// Radii of a search that a bucket is wide.
+const RADII_A_BUCKET: f64 = 2.0;
+/// Most buckets of a table for each block, which bounds what empty ones take.
+const BUCKETS_A_BLOCK: f64 = 2.0;
 /// Most buckets along an axis.
-const MOST_STEPS: usize = 1024;
+const MOST_STEPS: f64 = 1024.0;
 
 /// A run of places and the box of their photons.
 struct Block {
@@ -81,8 +84,8 @@ pub(crate) struct BlockHash<const EXACT: bool> {
 }
 
 impl<const EXACT: bool> BlockHash<EXACT> {
-    /// The search over some photons.
-    pub(crate) fn build(photons: &[Photon]) -> Indexed<Self> {
+    /// The search over some photons, for balls of about this radius; by default of the size that holds some dozens.
+    pub(crate) fn build(photons: &[Photon], radius: Option<f32>) -> Indexed<Self> {
         let positions = positions(photons);
         let mut ids: Vec<u32> = (0..photons.len() as u32).collect();
         fill(&positions, &mut ids);
@@ -97,12 +100,16 @@ impl<const EXACT: bool> BlockHash<EXACT> {
             x.sort_unstable_by(f32::total_cmp);
             x
         });
-        let steps = (libm::cbrt(blocks.len() as f64 / BLOCKS_A_BUCKET).ceil() as usize).clamp(1, MOST_STEPS);
+        let bounds = Aabb::around(positions.iter().copied());
+        let width = RADII_A_BUCKET * f64::from(radius.unwrap_or_else(|| usual_radius(&bounds, photons.len())));
+        let wanted = bounds.size().to_array().map(|size| (f64::from(size) / width).clamp(1.0, MOST_STEPS));
+        let excess = wanted.iter().product::<f64>() / (BUCKETS_A_BLOCK * blocks.len() as f64 + 1.0);
+        let steps = wanted.map(|steps| (steps / libm::cbrt(excess.max(1.0))).ceil() as usize);
         let tables = (0..if EXACT { 1 } else { TABLES }).map(|t| {
             let planes = std::array::from_fn(|axis| {
                 let shift = (2 * t + 1) as f64 / (2 * TABLES) as f64;
-                let at = |i: usize| ((i as f64 + shift) / steps as f64 * sorted[axis].len() as f64) as usize;
-                let mut planes: Vec<f32> = (0..steps).filter_map(|i| sorted[axis].get(at(i)).copied()).collect();
+                let at = |i: usize| ((i as f64 + shift) / steps[axis] as f64 * sorted[axis].len() as f64) as usize;
+                let mut planes: Vec<f32> = (0..steps[axis]).filter_map(|i| sorted[axis].get(at(i)).copied()).collect();
                 planes.dedup();
                 planes
             });
