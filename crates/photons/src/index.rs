@@ -4,13 +4,17 @@
 use crate::inclusion::PreparedQuery;
 use crate::nearest::{NearestHeap, Ties};
 use crate::region::Region;
-use crate::results::{List, Nearest, ResultSet};
+use crate::results::{Accumulation, List, Nearest, ResultSet};
 use crate::store::Store;
 use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
 use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::{Aabb, Vec3};
 use photinus_profile::SearchCounters;
+use rayon::prelude::*;
 use std::ops::Range;
+
+/// Queries that are worth a task of their own, where a structure searches them together.
+const QUERIES_A_TASK: usize = 256;
 
 /// A structure over the places of a [`Store`].
 pub(crate) trait Index: Send + Sync {
@@ -21,8 +25,21 @@ pub(crate) trait Index: Send + Sync {
     /// left out once its box is [out of reach](Scan::is_out_of_reach).
     fn search(&self, scan: &mut impl Scan);
 
+    /// Whether [`Index::search_all`] is faster for a batch.
+    const IN_BATCHES: bool = false;
+
+    /// Calls `run` with the index of each region and all runs of places that may hold photons of it.
+    fn search_all(&self, _regions: &[Region], _run: &mut impl FnMut(usize, Range<usize>)) {
+        unreachable!("only for structures that search in batches");
+    }
+
     /// Bytes held.
     fn bytes(&self) -> usize;
+
+    /// See [`SearchSummary::kernels`].
+    fn kernels(&self) -> &'static str {
+        ""
+    }
 }
 
 /// A search under way.
@@ -36,6 +53,12 @@ pub(crate) trait Scan {
 
     /// The middle of the region.
     fn middle(&self) -> Vec3;
+
+    /// The region.
+    fn region(&self) -> Region;
+
+    /// So many photons were tested by the structure itself, and are not in.
+    fn leave_out(&mut self, count: usize);
 
     /// Tests the photons of a run.
     fn run(&mut self, places: Range<usize>);
@@ -70,6 +93,14 @@ impl<R: ResultSet + ?Sized> Scan for Scanning<'_, R> {
     #[inline]
     fn middle(&self) -> Vec3 {
         self.middle
+    }
+
+    fn region(&self) -> Region {
+        self.region
+    }
+
+    fn leave_out(&mut self, count: usize) {
+        self.tested += count as u64;
     }
 
     #[inline]
@@ -114,6 +145,19 @@ impl<I: Index> Indexed<I> {
         let mut scan = Scanning { store: &self.store, region, middle, results, tested: 0 };
         self.index.search(&mut scan);
         scan.tested
+    }
+
+    /// Sums for a batch that the structure searches at once.
+    fn gather_part(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
+        let regions: Vec<Region> = queries.iter().map(sphere).collect();
+        let mut sums: Vec<Accumulation> = queries.iter().map(|query| Accumulation::new(query, kernel)).collect();
+        self.index.search_all(&regions, &mut |query, places| {
+            let (region, results) = (regions[query], &mut sums[query]);
+            Scanning { store: &self.store, region, middle: region.middle(), results, tested: 0 }.run(places);
+        });
+        for (out, sums) in out.iter_mut().zip(&sums) {
+            *out = sums.gathered();
+        }
     }
 
     fn visit_counting(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32)) -> u64 {
@@ -170,7 +214,12 @@ impl ResultSet for NearestFitting<'_> {
 
 impl<I: Index> Search for Indexed<I> {
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
-        gather_batch_by_visiting(self, queries, kernel, out);
+        if !I::IN_BATCHES {
+            return gather_batch_by_visiting(self, queries, kernel, out);
+        }
+        assert_eq!(queries.len(), out.len(), "one result a query");
+        let parts = queries.par_chunks(QUERIES_A_TASK).zip(out.par_chunks_mut(QUERIES_A_TASK));
+        parts.for_each(|(queries, out)| self.gather_part(queries, kernel, out));
     }
 
     fn gather_counted(
@@ -236,6 +285,6 @@ impl<I: Index> Search for Indexed<I> {
 
     fn summary(&self) -> SearchSummary {
         let bytes = (self.store.bytes() + self.index.bytes()) as u64;
-        SearchSummary { name: I::NAME, photons: self.store.len() as u64, bytes, kernels: "" }
+        SearchSummary { name: I::NAME, photons: self.store.len() as u64, bytes, kernels: self.index.kernels() }
     }
 }

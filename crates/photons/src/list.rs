@@ -1,7 +1,9 @@
 //! The list of searches: what the command line, the documentation and the tests loop over.
 
 use crate::searches::block_hash::{self, BlockHash};
-use crate::searches::{brute_force, bvh, grid, hashed_grid, kd_balanced, kd_unbalanced, kd_vvh, octree, r_tree};
+use crate::searches::{
+    brute_blocked, brute_force, bvh, grid, hashed_grid, kd_balanced, kd_unbalanced, kd_vvh, octree, r_tree,
+};
 use crate::{Photon, PhotonError, Search};
 
 /// What building a search may be told.
@@ -51,6 +53,7 @@ pub const SEARCHES: &[SearchMember] = &[
     exact("r-tree", r_tree::ABOUT, |p, _| Box::new(r_tree::RTree::build(&p))),
     exact("bvh", bvh::ABOUT, |p, _| Box::new(bvh::Bvh::build(&p))),
     exact("octree", octree::ABOUT, |p, _| Box::new(octree::Octree::build(&p))),
+    exact("brute-force-blocked", brute_blocked::ABOUT, |p, _| Box::new(brute_blocked::BruteBlocked::build(&p))),
     exact("brute-force", brute_force::ABOUT, |p, _| Box::new(brute_force::BruteForce::new(p))),
 ];
 

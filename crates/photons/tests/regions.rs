@@ -94,7 +94,7 @@ fn flux_accumulates_as_it_is_gathered() {
 }
 
 /// An approximate member finds no photon that is not there, and most of those that are: in balls of the radius that it was
-/// built for.
+/// built for, on surfaces.
 #[test]
 fn approximate_members_lose_little() {
     for member in SEARCHES.iter().filter(|m| !m.is_exact) {
@@ -106,14 +106,15 @@ fn approximate_members_lose_little() {
                 let region = Region::Sphere { center: position, radius };
                 let (all, some) = (list(&*oracle, &region), list(&*search, &region));
                 assert!(some.iter().all(|n| all.contains(n)), "{}: {region:?}", member.name);
-                if radius == set.radius {
+                // A middle off all surfaces lies in buckets that list no block: such balls lose all.
+                if radius == set.radius && set.photons.iter().any(|photon| photon.position() == position) {
                     found += some.len();
                     missed += all.len() - some.len();
                 }
             }
             if set.name == "box" {
                 let loss = missed as f64 / (found + missed) as f64;
-                assert!(loss < 0.2, "{} loses {loss} of {}", member.name, found + missed);
+                assert!(loss < 0.05, "{} loses {loss} of {}", member.name, found + missed);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The members: one file each.
 
 pub(crate) mod block_hash;
+pub(crate) mod brute_blocked;
 pub(crate) mod brute_force;
 pub(crate) mod bvh;
 pub(crate) mod grid;
