@@ -40,10 +40,13 @@ pub struct Photon {
 
 const _: () = assert!(size_of::<Photon>() == 24);
 
+/// The farthest that photons lie from the origin along an axis.
+pub(crate) const FARTHEST: f32 = 1e18;
+
 /// Whether a point may be searched from or held: not NaN and not farther out than [`Photon`] says.
 #[inline]
 pub(crate) fn is_searchable(position: Vec3) -> bool {
-    position.abs().cmple(Vec3::splat(1e18)).all()
+    position.abs().cmple(Vec3::splat(FARTHEST)).all()
 }
 
 impl Photon {

@@ -1,7 +1,7 @@
 //! Where photons are looked for.
 
 use crate::inclusion::distance_sq;
-use crate::photon::is_searchable;
+use crate::photon::{FARTHEST, is_searchable};
 use photinus_geometry::{Aabb, Vec3};
 
 /// A part of space, closed, with a middle that distances are measured from.
@@ -33,13 +33,14 @@ pub enum Region {
 }
 
 impl Region {
-    /// The point that distances are measured from: of bounds their middle, zero along an axis that has none.
+    /// The point that distances are measured from: of bounds their middle, or what is next to it of where photons can be,
+    /// and zero along an axis that has none.
     pub fn middle(&self) -> Vec3 {
         match *self {
             Self::Sphere { center, .. } | Self::Cuboid { center, .. } => center,
             Self::Bounds { min, max } => {
                 let middle = min * 0.5 + max * 0.5;
-                Vec3::from(middle.to_array().map(|x| if x.is_finite() { x } else { 0.0 }))
+                Vec3::from(middle.to_array().map(|x| if x.is_finite() { x.clamp(-FARTHEST, FARTHEST) } else { 0.0 }))
             }
         }
     }

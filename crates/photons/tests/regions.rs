@@ -28,6 +28,9 @@ fn regions(set: &Set) -> Vec<Region> {
     let negative = Region::Cuboid { center: Vec3::ZERO, half: Vec3::new(1.0, -1.0, 1.0) };
     let nan = Region::Sphere { center: Vec3::ZERO, radius: f32::NAN };
     let nowhere = Region::Bounds { min: Vec3::splat(f32::NAN), max: Vec3::INFINITY };
+    let huge = Region::Bounds { min: Vec3::splat(-1e18), max: Vec3::splat(1e38) };
+    let beyond = Region::Bounds { min: Vec3::splat(1e30), max: Vec3::splat(3e38) };
+    regions.extend([huge, beyond]);
     regions.extend([everywhere, corner, edge, inverted, negative, nan, nowhere]);
     regions
 }

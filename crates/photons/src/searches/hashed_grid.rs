@@ -124,8 +124,8 @@ impl Index for HashedGrid {
             }
             let [low, high] = [middle.map(|at| (at - shell).max(0)), middle.map(|at| (at + shell).min(LAST))];
             let side = (2 * shell + 1) as usize;
-            if side.pow(2) * 6 > self.cells.len() {
-                // Fewer cells hold photons than the shell has: all that are left, in no order.
+            if side.pow(3) > 4 * self.cells.len() {
+                // Far fewer cells hold photons than the shells so far have: all that are left, in no order.
                 for cell in &self.cells {
                     let place = place_of(cell.key);
                     if (0..3).any(|axis| (place[axis] - middle[axis]).abs() >= shell) {

@@ -39,7 +39,7 @@ impl KdVvh {
         let mut ids: Vec<u32> = (0..photons.len() as u32).collect();
         let bounds = Aabb::around(positions.iter().copied());
         let radius = radius.unwrap_or_else(|| usual_radius(&bounds, ids.len()));
-        let mut maker = Maker { positions: &positions, radius, nodes: Vec::new() };
+        let mut maker = Maker { positions: &positions, radius, nodes: Vec::new(), moved: Vec::new() };
         maker.divide(&mut ids, bounds, 0, 0);
         Indexed::new(photons, (Self { bounds, nodes: maker.nodes }, ids))
     }
@@ -56,6 +56,8 @@ struct Maker<'a> {
     positions: &'a [Vec3],
     radius: f32,
     nodes: Vec<Node>,
+    /// Photons above a plane, while a cell is divided.
+    moved: Vec<u32>,
 }
 
 impl Maker<'_> {
@@ -65,9 +67,18 @@ impl Maker<'_> {
             self.nodes.push(Node::Leaf { first, end: first + ids.len() as u32 });
             return;
         };
-        let at = |id: &u32| self.positions[*id as usize][axis];
-        ids.sort_unstable_by(|a, b| (at(a) >= plane).cmp(&(at(b) >= plane)).then(a.cmp(b)));
-        let middle = ids.partition_point(|id| at(id) < plane);
+        // Photons keep their order on either side.
+        self.moved.clear();
+        let mut middle = 0;
+        for i in 0..ids.len() {
+            if self.positions[ids[i] as usize][axis] < plane {
+                ids[middle] = ids[i];
+                middle += 1;
+            } else {
+                self.moved.push(ids[i]);
+            }
+        }
+        ids[middle..].copy_from_slice(&self.moved);
         let node = self.nodes.len();
         self.nodes.push(Node::Plane { axis: axis as u8, plane, above: 0 });
         let (below, above) = ids.split_at_mut(middle);
