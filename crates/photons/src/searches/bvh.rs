@@ -6,7 +6,7 @@ use crate::index::{Index, Indexed, Scan};
 use crate::store::positions;
 use photinus_geometry::{Aabb, Vec3};
 
-pub(crate) const ABOUT: &str = "bounding volume hierarchy, halves by the longest axis, leaves of eight photons";
+pub(crate) const ABOUT: &str = "bounding volume hierarchy, leaves of eight photons";
 
 /// Most photons of a leaf.
 const LEAF: usize = 8;

@@ -13,7 +13,7 @@ use kernels::SieveKernel;
 use sieve::{Group, LANES};
 use std::ops::Range;
 
-pub(crate) const ABOUT: &str = "every photon for every query, four queries at a time in cache blocks, with vectors";
+pub(crate) const ABOUT: &str = "every photon for every query, in cache blocks with vectors";
 
 /// Blocks that are tested for all queries before the next: 24 KiB of coordinates.
 const BLOCKS_AT_ONCE: usize = 128;
