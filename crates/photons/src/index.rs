@@ -6,14 +6,14 @@ use crate::nearest::{NearestHeap, Ties};
 use crate::region::Region;
 use crate::results::{Accumulation, List, Nearest, ResultSet};
 use crate::store::Store;
-use crate::visiting::{gather_batch_by_visiting, gather_counted_by_visiting};
+use crate::visiting::{gather_by_visiting, gather_counted_by_visiting};
 use crate::{GatherQuery, Gathered, Kernel, Neighbor, Photon, Search, SearchSummary};
 use photinus_geometry::{Aabb, Vec3};
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Queries that are worth a task of their own, where a structure searches them together.
+/// Queries that are worth a task of their own.
 const QUERIES_A_TASK: usize = 256;
 
 /// A structure over the places of a [`Store`].
@@ -25,12 +25,10 @@ pub(crate) trait Index: Send + Sync {
     /// left out once its box is [out of reach](Scan::is_out_of_reach).
     fn search(&self, scan: &mut impl Scan);
 
-    /// Whether [`Index::search_all`] is faster for a batch.
-    const IN_BATCHES: bool = false;
-
-    /// Calls `run` with the index of each region and all runs of places that may hold photons of it.
-    fn search_all(&self, _regions: &[Region], _run: &mut impl FnMut(usize, Range<usize>)) {
-        unreachable!("only for structures that search in batches");
+    /// Calls `run` with the index of each region and all runs of places that may hold photons of it; false, without a
+    /// call, for a structure that had better be asked one by one.
+    fn search_all(&self, _regions: &[Region], _run: &mut impl FnMut(usize, Range<usize>)) -> bool {
+        false
     }
 
     /// Bytes held.
@@ -147,16 +145,16 @@ impl<I: Index> Indexed<I> {
         scan.tested
     }
 
-    /// Sums for a batch that the structure searches at once.
+    /// Sums for a batch.
     fn gather_part(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
         let regions: Vec<Region> = queries.iter().map(sphere).collect();
         let mut sums: Vec<Accumulation> = queries.iter().map(|query| Accumulation::new(query, kernel)).collect();
-        self.index.search_all(&regions, &mut |query, places| {
+        let is_searched = self.index.search_all(&regions, &mut |query, places| {
             let (region, results) = (regions[query], &mut sums[query]);
             Scanning { store: &self.store, region, middle: region.middle(), results, tested: 0 }.run(places);
         });
-        for (out, sums) in out.iter_mut().zip(&sums) {
-            *out = sums.gathered();
+        for ((out, sums), query) in out.iter_mut().zip(&sums).zip(queries) {
+            *out = if is_searched { sums.gathered() } else { gather_by_visiting(self, query, kernel) };
         }
     }
 
@@ -214,9 +212,6 @@ impl ResultSet for NearestFitting<'_> {
 
 impl<I: Index> Search for Indexed<I> {
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
-        if !I::IN_BATCHES {
-            return gather_batch_by_visiting(self, queries, kernel, out);
-        }
         assert_eq!(queries.len(), out.len(), "one result a query");
         let parts = queries.par_chunks(QUERIES_A_TASK).zip(out.par_chunks_mut(QUERIES_A_TASK));
         parts.for_each(|(queries, out)| self.gather_part(queries, kernel, out));

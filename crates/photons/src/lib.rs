@@ -20,6 +20,7 @@ mod region;
 pub mod results;
 mod search;
 mod searches;
+mod space;
 mod store;
 mod visiting;
 

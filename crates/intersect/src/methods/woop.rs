@@ -66,8 +66,8 @@ fn edge_functions<S: Scalar>([a, b, c]: &[[S; 3]; 3]) -> [S; 3] {
 
 /// The second half of the method: sheared vertices in doubles (from floats: exact) to a hit.
 ///
-/// `dir_z` is [`Started::dir_z`], never zero. The result is the hit of the sheared triangle, t and the weights rounded by a few
-/// 2^-53; t may lie outside the ray's interval. Over any scalar so that its operations can be counted.
+/// `dir_z` is [`Started::dir_z`], never zero. The result is the hit of the sheared triangle, t and the weights rounded by
+/// a few 2^-53; t may lie outside the ray's interval. Over any scalar so that its operations can be counted.
 #[inline]
 pub fn finish<S: Scalar>(sheared: &[[S; 3]; 3], dir_z: S) -> Option<TriangleHit<S>> {
     let [u, v, w] = edge_functions(sheared);

@@ -7,9 +7,9 @@
 //! of each table that its middle lies in, and may miss what lies beyond; read whole, it looks into all buckets of the first
 //! table that the region touches, and misses nothing.
 
-use super::kd_vvh::usual_radius;
 use crate::Photon;
 use crate::index::{Index, Indexed, Scan};
+use crate::space::usual_radius;
 use crate::store::positions;
 use photinus_geometry::{Aabb, Vec3};
 

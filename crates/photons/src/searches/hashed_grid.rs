@@ -2,9 +2,9 @@
 //! Pomeranets, Gross, "Optimized Spatial Hashing for Collision Detection of Deformable Objects", VMV 2003, with cells told
 //! apart by their places instead of left to collide.
 
-use super::kd_vvh::usual_radius;
 use crate::Photon;
 use crate::index::{Index, Indexed, Scan};
+use crate::space::usual_radius;
 use photinus_geometry::{Aabb, Vec3};
 
 pub(crate) const ABOUT: &str = "hashed grid, cells of about a gather radius";

@@ -7,6 +7,7 @@
 
 use crate::Photon;
 use crate::index::{Index, Indexed, Scan};
+use crate::space::cut;
 use crate::store::positions;
 use photinus_geometry::Aabb;
 
@@ -71,13 +72,6 @@ impl KdUnbalanced {
         }
         Indexed::new(photons, (tree, ids))
     }
-}
-
-/// A box on both sides of a plane.
-pub(crate) fn cut(bounds: Aabb, axis: usize, plane: f32) -> [Aabb; 2] {
-    let [mut below, mut above] = [bounds; 2];
-    (below.max[axis], above.min[axis]) = (plane, plane);
-    [below, above]
 }
 
 impl Index for KdUnbalanced {

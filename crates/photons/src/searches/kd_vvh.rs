@@ -4,9 +4,9 @@
 //! A ball of radius r whose middle is anywhere reaches a cell with a chance that goes with the volume of the cell grown by r
 //! on all sides; planes are chosen among bins, and a cell is a leaf where testing its photons is cheaper than a plane.
 
-use super::kd_unbalanced::cut;
 use crate::Photon;
 use crate::index::{Index, Indexed, Scan};
+use crate::space::{cut, usual_radius};
 use crate::store::positions;
 use photinus_geometry::{Aabb, Vec3};
 
@@ -43,12 +43,6 @@ impl KdVvh {
         maker.divide(&mut ids, bounds, 0, 0);
         Indexed::new(photons, (Self { bounds, nodes: maker.nodes }, ids))
     }
-}
-
-/// A radius that holds some dozens of so many photons, if they lie on surfaces of a box of these bounds.
-pub(crate) fn usual_radius(bounds: &Aabb, count: usize) -> f32 {
-    let area = 2.0 * bounds.half_area();
-    (area * 16.0 / count.max(1) as f32).sqrt().max(f32::MIN_POSITIVE)
 }
 
 /// What building a tree needs.

@@ -53,8 +53,8 @@ impl Seen {
         most: [0.0; PACKET],
     };
 
-    /// Looks at a block, and returns which triangles rays of these packets, at most four, that all start at `start`, may hit within their reach: a mask
-    /// of eight lanes for each packet.
+    /// Looks at a block, and returns which triangles rays of these packets may hit within their reach: a mask of eight lanes
+    /// for each packet. They are four at most and all start at `start`.
     #[inline(always)]
     pub fn look<K: Kernel>(
         &mut self,

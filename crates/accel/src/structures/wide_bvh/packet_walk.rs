@@ -17,12 +17,13 @@ const BUNDLE: usize = 4;
 /// Bundles whose turn comes so much later are asked for, as far as it takes to tell whether they run together.
 const AHEAD: usize = 2;
 
-/// What a beam's visit of a node costs, and a packet's of a leaf, in visits of a node by a single ray; and what a ray's share of
-/// both may come to, which is about what a single ray pays in a scene of some depth.
+/// What visits of a node and of a leaf by a beam cost, in visits of a node.
 const NODE_WORK: usize = 1;
 const LEAF_WORK: usize = 4;
+/// What the visits for a ray may cost, and those for each hit besides: what costs more had better go alone, as where triangles
+/// are as small as pixels and each leaf is met for one ray.
+const RAY_WORK: usize = 2;
 const HIT_WORK: usize = 2;
-const MOST_WORK: usize = 4;
 /// After bundles that were given up so many go alone at most before the next is tried.
 const MOST_ALONE: usize = 8;
 
@@ -102,7 +103,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         let begun = if COUNT { ticks() } else { 0 };
         self.stack[0] = Waiting { entry: self.beam.start, child: Child::node(0), parent: Child::END, slot: 0 };
         let mut top = 1;
-        let (mut work, mut most_work) = (0, self.count * PACKET * MOST_WORK / 2);
+        let (mut work, mut most_work) = (0, self.count * PACKET * RAY_WORK);
         while top > 0 && work <= most_work {
             top -= 1;
             let Waiting { entry, child, parent, slot } = self.stack[top];

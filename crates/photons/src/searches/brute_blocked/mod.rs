@@ -46,7 +46,6 @@ impl BruteBlocked {
 
 impl Index for BruteBlocked {
     const NAME: &'static str = "brute-force-blocked";
-    const IN_BATCHES: bool = true;
 
     fn search(&self, scan: &mut impl Scan) {
         let region = scan.region();
@@ -58,7 +57,7 @@ impl Index for BruteBlocked {
         scan.leave_out(self.count - tested);
     }
 
-    fn search_all(&self, regions: &[Region], run: &mut impl FnMut(usize, Range<usize>)) {
+    fn search_all(&self, regions: &[Region], run: &mut impl FnMut(usize, Range<usize>)) -> bool {
         let [x, y, z] = self.blocks.each_ref().map(Vec::as_slice);
         let mut found = Vec::new();
         let mut groups = Vec::new();
@@ -85,6 +84,7 @@ impl Index for BruteBlocked {
                 }
             }
         }
+        true
     }
 
     fn bytes(&self) -> usize {
