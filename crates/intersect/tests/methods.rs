@@ -7,7 +7,7 @@ use photinus_geometry::{Hit, Primitives, Ray, Vec3};
 use photinus_intersect::doubles::Lanes;
 use photinus_intersect::methods::angle_summation::tolerance;
 use photinus_intersect::methods::woop::{Woop, finish, finish_lanes};
-use photinus_intersect::{DEFAULT_METHOD, METHODS, MethodInfo, find_method, is_degenerate};
+use photinus_intersect::{DEFAULT_METHOD, METHODS, MethodInfo, TriangleHit, find_method, is_degenerate};
 use photinus_num::{Sampler, Scalar, StreamKind};
 
 #[test]
@@ -330,6 +330,24 @@ fn woop_finishes_lanes_as_it_finishes_one() {
         }
     }
     assert!(hits > 10_000 && misses > 10_000, "{hits} {misses}");
+}
+
+#[test]
+fn woop_is_the_same_to_the_bit_where_the_other_vertices_change_places() {
+    let mut hits = 0;
+    for i in 0..40_000 {
+        let r = randoms::<12>(21, i).map(|x| x as f32);
+        let v = |k: usize| [r[k], r[k + 1], r[k + 2]];
+        let (a, b, c) = (v(0), v(3), v(6));
+        let aim: [f32; 3] = std::array::from_fn(|k| (a[k] + r[9].abs() * b[k] + r[10].abs() * c[k]) / 2.0);
+        let one = call::<Woop, f32>([r[11]; 3], aim, [a, b, c], 0.0, INF);
+        let other = call::<Woop, f32>([r[11]; 3], aim, [a, c, b], 0.0, INF);
+        let bits = |h: Option<TriangleHit<f32>>| h.map(|h| [h.t, h.alpha, h.beta].map(f32::to_bits));
+        let turned = other.map(|h| TriangleHit { alpha: h.beta, beta: h.alpha, ..h });
+        assert_eq!(bits(one), bits(turned), "triangle {i} of seed 21");
+        hits += u32::from(one.is_some());
+    }
+    assert!(hits > 5000, "{hits}");
 }
 
 #[test]

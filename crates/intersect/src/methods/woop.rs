@@ -67,21 +67,22 @@ fn edge_functions<S: Scalar>([a, b, c]: &[[S; 3]; 3]) -> [S; 3] {
 /// The second half of the method: sheared vertices in doubles (from floats: exact) to a hit.
 ///
 /// `dir_z` is [`Started::dir_z`], never zero. The result is the hit of the sheared triangle, t and the weights rounded by
-/// a few 2^-53; t may lie outside the ray's interval. Over any scalar so that its operations can be counted.
+/// a few 2^-53; t may lie outside the ray's interval, and is the same to the bit where the second and the third vertex change
+/// places. Over any scalar so that its operations can be counted.
 #[inline]
 pub fn finish<S: Scalar>(sheared: &[[S; 3]; 3], dir_z: S) -> Option<TriangleHit<S>> {
     let [u, v, w] = edge_functions(sheared);
     if straddles([u, v, w], S::zero()) {
         return None;
     }
-    let det = u + v + w;
+    let det = u + (v + w);
     let inv = S::one() / (det * dir_z);
     let inv_det = inv * dir_z;
     // Seen from the side, not a number, or, where vertices were doubles from the start, beyond what doubles hold.
     if !(inv_det.abs() > S::zero() && inv_det.is_finite()) {
         return None;
     }
-    let t = (u * sheared[0][2] + v * sheared[1][2] + w * sheared[2][2]) * inv;
+    let t = (u * sheared[0][2] + (v * sheared[1][2] + w * sheared[2][2])) * inv;
     Some(TriangleHit { t, alpha: v * inv_det, beta: w * inv_det })
 }
 
@@ -108,12 +109,12 @@ pub fn finish_lanes<D: Doubles>(sheared: &[[D; 3]; 3], dir_z: D) -> LaneHits<D> 
     let w = b[0] * a[1] - b[1] * a[0];
     let below = u.lt(zero) | v.lt(zero) | w.lt(zero);
     let above = zero.lt(u) | zero.lt(v) | zero.lt(w);
-    let det = u + v + w;
+    let det = u + (v + w);
     let inv = dir_z.all(1.0) / (det * dir_z);
     let inv_det = inv * dir_z;
     let (least, most) = (zero.all(f64::NEG_INFINITY), zero.all(f64::INFINITY));
     let is_solid = zero.lt(inv_det) & inv_det.lt(most) | inv_det.lt(zero) & least.lt(inv_det);
-    let t = (u * a[2] + v * b[2] + w * c[2]) * inv;
+    let t = (u * a[2] + (v * b[2] + w * c[2])) * inv;
     LaneHits { hits: is_solid & !(below & above), t, alpha: v * inv_det, beta: w * inv_det }
 }
 

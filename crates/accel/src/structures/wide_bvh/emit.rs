@@ -3,6 +3,7 @@
 
 use super::binary::{BinaryNode, BinaryTree, PARALLEL_PRIMS, Place};
 use super::collapse::Leaves;
+use super::doubled::hide_doubled;
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
 use crate::huge_array::HugeArray;
 use arrayvec::ArrayVec;
@@ -153,6 +154,7 @@ impl Writer<'_> {
             }
             block.ids[lane] = *id as u32;
         }
+        hide_doubled(&mut block);
         block
     }
 }

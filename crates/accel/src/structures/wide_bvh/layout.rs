@@ -144,7 +144,7 @@ impl Node {
 
 /// Eight triangles by vertex and axis, with their ids. Five cache lines.
 ///
-/// Lanes without a triangle hold NaN, which no ray hits.
+/// Lanes without a triangle hold NaN, which no ray hits, as do those of triangles that lie on others.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct TriangleBlock {

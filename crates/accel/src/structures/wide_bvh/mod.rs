@@ -8,6 +8,7 @@ mod bins;
 mod candidates;
 mod collapse;
 mod dispatch;
+mod doubled;
 mod emit;
 mod frustum;
 mod kernels;

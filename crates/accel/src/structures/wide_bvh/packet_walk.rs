@@ -200,7 +200,8 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
             let packet = &mut self.packets[self.first + p];
             let (mut lanes, mut hit) = (lanes[p], 0);
             while lanes != 0 {
-                let found = packet.test::<K, ANY>(self.kernel, block, lanes.trailing_zeros() as usize, reached[p]);
+                let found =
+                    packet.test::<K, ANY, true>(self.kernel, block, lanes.trailing_zeros() as usize, reached[p]);
                 hits += found.count_ones() as usize;
                 hit |= found;
                 lanes &= lanes - 1;
@@ -238,7 +239,7 @@ impl<'a, K: Kernel> PacketWalk<'a, K> {
         while left != 0 {
             let (p, lane) = (left.trailing_zeros() as usize / WIDTH, left.trailing_zeros() as usize % WIDTH);
             let rays = self.seen.may_hit(self.kernel, &packets[p], lane);
-            let found = if rays == 0 { 0 } else { packets[p].test::<K, ANY>(self.kernel, block, lane, rays) };
+            let found = if rays == 0 { 0 } else { packets[p].test::<K, ANY, false>(self.kernel, block, lane, rays) };
             hits += found.count_ones() as usize;
             hit |= u32::from(found != 0) << p;
             left &= left - 1;

@@ -1,6 +1,7 @@
 //! Fitting the tree to primitives that moved: triangles are read anew, boxes grow and shrink from the leaves up, and what
 //! hangs below what stays.
 
+use super::doubled::hide_doubled;
 use super::layout::{BLOCK, Child, NODE, Node, TriangleBlock, WIDTH};
 use super::{NAME, WideBvh};
 use crate::structure::RefitError;
@@ -49,7 +50,7 @@ fn block_ids(block: &TriangleBlock) -> impl Iterator<Item = u32> + use<> {
     block.ids.into_iter().filter(|id| *id != NO_HIT)
 }
 
-/// Reads the triangles of a block anew. Those that nothing can hit stay in their lanes as what no ray hits, and may come back.
+/// Reads the triangles of a block anew. Those that nothing can hit, or that lie on others, stay in their lanes as what no ray hits, and may come back.
 fn fit_block(block: &mut TriangleBlock, primitives: &Primitives, bounds: &[Aabb]) {
     for (lane, id) in block.ids.into_iter().enumerate().filter(|(_, id)| *id != NO_HIT) {
         let is_hittable = !bounds[id as usize].is_empty();
@@ -59,4 +60,5 @@ fn fit_block(block: &mut TriangleBlock, primitives: &Primitives, bounds: &[Aabb]
             }
         }
     }
+    hide_doubled(block);
 }

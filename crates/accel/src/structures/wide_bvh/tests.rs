@@ -311,3 +311,53 @@ fn frustums_lose_no_hit() {
         }
     }
 }
+
+/// Every order of three vertices.
+const ORDERS: [[u32; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+
+/// Triangles, each once more in one of the six orders of its vertices, at a place of its own in the order of ids.
+fn doubled_scene(seed: u64, count: u32) -> Arc<Primitives> {
+    let once = scene(seed, count, 1.0);
+    let mut out = Primitives { spheres: Vec::new(), ..Primitives::clone(&once) };
+    for (i, t) in once.triangles.iter().enumerate() {
+        out.positions.extend(t.map(|v| once.positions[v as usize]));
+        let first = out.positions.len() as u32 - 3;
+        out.triangles.push(ORDERS[i % 6].map(|v| first + v));
+    }
+    Arc::new(out)
+}
+
+#[test]
+fn triangles_that_lie_on_others_are_hidden_until_they_move() {
+    let count = 600;
+    let mut moved = Primitives::clone(&doubled_scene(12, count));
+    let doubled = Arc::new(moved.clone());
+    for v in &mut moved.positions[3 * count as usize..] {
+        *v += Vec3::splat(1e-3);
+    }
+    let moved = Arc::new(moved);
+    let rays = [rays(3000, 1.0), grouped_rays(1.0)].concat();
+    let find = |structure: &dyn Structure| {
+        let mut hits = vec![Hit::MISS; rays.len()];
+        structure.closest_hit(&rays, &mut hits);
+        hits
+    };
+    let hidden = |tree: &WideBvh| {
+        let lanes = |block: &TriangleBlock| (0..block.len()).filter(|l| block.vertices[0][*l].is_nan()).count();
+        tree.blocks.iter().map(lanes).sum::<usize>()
+    };
+    for kernel in [vec![Kernel::Scalar], kernels()].concat() {
+        let options = BuildOptions { kernel, ..BuildOptions::default() };
+        let mut tree = WideBvh::new(&doubled, &options).unwrap();
+        // Two orders of six have the first vertex in common.
+        assert_eq!(hidden(&tree), count as usize / 3, "seed 12, {kernel:?}");
+        for (primitives, hide) in [(&doubled, true), (&moved, false), (&doubled, true)] {
+            tree.refit(primitives).unwrap();
+            assert_eq!(hidden(&tree), if hide { count as usize / 3 } else { 0 }, "seed 12, {kernel:?}");
+            let oracle = crate::build("brute-force", primitives.clone(), &options).unwrap();
+            let (found, expected) = (find(&tree), find(&*oracle));
+            assert!(expected.iter().filter(|hit| hit.is_hit()).count() > 500);
+            assert_eq!(found, expected, "seed 12, {kernel:?}");
+        }
+    }
+}

@@ -136,8 +136,8 @@ impl Kernel for Avx2 {
             let above = edges.map(|e| _mm256_cmp_ps::<_CMP_GT_OQ>(e, zero));
             let below = _mm256_or_ps(_mm256_or_ps(below[0], below[1]), below[2]);
             let above = _mm256_or_ps(_mm256_or_ps(above[0], above[1]), above[2]);
-            let ids = _mm256_loadu_si256(block.ids.as_ptr().cast());
-            let unused = _mm256_castsi256_ps(_mm256_cmpeq_epi32(ids, _mm256_set1_epi32(-1)));
+            // Lanes without a triangle hold no numbers.
+            let unused = _mm256_cmp_ps::<_CMP_NLE_UQ>(least, most);
             let beyond = _mm256_or_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(least, high), _mm256_cmp_ps::<_CMP_LT_OQ>(most, low));
             let out = _mm256_or_ps(_mm256_or_ps(_mm256_and_ps(below, above), unused), beyond);
             !_mm256_movemask_ps(out) as u32 & 0xFF

@@ -136,8 +136,8 @@ impl Kernel for Avx512 {
             let (low, high) = (_mm256_set1_ps(reach.low), _mm256_set1_ps(reach.high));
             let below = edges.map(|e| _mm256_cmp_ps_mask::<_CMP_LT_OQ>(e, zero));
             let above = edges.map(|e| _mm256_cmp_ps_mask::<_CMP_GT_OQ>(e, zero));
-            let ids = _mm256_loadu_si256(block.ids.as_ptr().cast());
-            let used = _mm256_cmpneq_epi32_mask(ids, _mm256_set1_epi32(-1));
+            // Lanes without a triangle hold no numbers.
+            let used = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(least, most);
             let beyond = _mm256_cmp_ps_mask::<_CMP_GT_OQ>(least, high) | _mm256_cmp_ps_mask::<_CMP_LT_OQ>(most, low);
             u32::from(used & !beyond & !((below[0] | below[1] | below[2]) & (above[0] | above[1] | above[2])))
         }

@@ -77,8 +77,9 @@ pub unsafe fn packet_block(packet: &Packet, block: &TriangleBlock) -> u32 {
             }
         }
         let beside = _mm256_or_ps(_mm256_or_ps(above[0], above[1]), _mm256_or_ps(below[0], below[1]));
-        let ids = _mm256_loadu_si256(block.ids.as_ptr().cast());
-        let unused = _mm256_castsi256_ps(_mm256_cmpeq_epi32(ids, _mm256_set1_epi32(-1)));
+        // Lanes without a triangle hold no numbers.
+        let first = _mm256_loadu_ps(vertices);
+        let unused = _mm256_cmp_ps::<_CMP_UNORD_Q>(first, first);
         let out = _mm256_or_ps(_mm256_or_ps(beside, unused), _mm256_or_ps(beyond, before));
         !_mm256_movemask_ps(out) as u32 & 0xFF
     }

@@ -6,7 +6,7 @@ use crate::structures::wide_bvh::beam::{Beam, BeamSlots};
 use crate::structures::wide_bvh::layout::{Child, Node, TriangleBlock, WIDTH};
 use crate::structures::wide_bvh::packet::{PACKET, Packet};
 use crate::structures::wide_bvh::ray_setup::RaySetup;
-use photinus_geometry::{NO_HIT, Ray};
+use photinus_geometry::Ray;
 use photinus_intersect::doubles;
 
 /// The kernel.
@@ -73,7 +73,8 @@ impl Kernel for Scalar {
             let least = min(min(z[0][lane], z[1][lane]), z[2][lane]);
             let most = max(max(z[0][lane], z[1][lane]), z[2][lane]);
             let beyond = least > reach.high || most < reach.low;
-            let used = block.ids[lane] != NO_HIT;
+            // Lanes without a triangle hold no numbers.
+            let used = least <= most;
             mask |= u32::from(used && !beyond && !(negative && positive)) << lane;
         }
         mask
@@ -138,7 +139,7 @@ impl Kernel for Scalar {
             let v = [vertex(0), vertex(1), vertex(2)];
             let beside = (0..2).any(|k| v.iter().all(|v| v[k][0] > 0.0) || v.iter().all(|v| v[k][1] < 0.0));
             let beyond = v.iter().all(|v| v[2][0] > packet.reach[1]) || v.iter().all(|v| v[2][1] < packet.reach[0]);
-            let used = block.ids[lane] != NO_HIT;
+            let used = !block.vertices[0][lane].is_nan();
             mask | u32::from(used && !beside && !beyond) << lane
         })
     }
