@@ -7,6 +7,7 @@ use std::path::Path;
 
 /// Every crate and its floor. A crate on no floor is an error.
 const FLOORS: &[(&str, u32)] = &[
+    ("photinus-memory", 0),
     ("photinus-num", 0),
     ("photinus-profile", 0),
     ("photinus-geometry", 1),

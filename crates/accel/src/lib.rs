@@ -8,7 +8,6 @@ pub mod bounds;
 mod fragment;
 mod grid;
 mod hierarchy;
-mod huge_array;
 pub mod instances;
 mod laboratory;
 pub mod list;

@@ -168,6 +168,9 @@ fn searches(wanted: &Wanted, search: &dyn Search, queries: &[GatherQuery], order
             }
         });
     }
+    wanted.row(&format!("gather, constant, one batch, {order}"), "a query", 7, queries.len(), || {
+        search.gather(queries, Kernel::Constant, &mut out);
+    });
     wanted.row(&format!("one by one, {order}"), "a query", 7, queries.len(), || {
         for (q, o) in queries.iter().zip(&mut out) {
             search.gather(std::slice::from_ref(q), Kernel::Epanechnikov, std::slice::from_mut(o));

@@ -30,14 +30,14 @@ const EMBREE_TEST: (&str, &str) = ("benches/peers/rays/src/engines/embree.rs", "
 const ALLOCATOR_TEST: (&str, &str) = ("crates/cli/tests/memory.rs", "memory_stays_as_predicted_over_many_passes");
 
 /// Arrays hold what was written to them.
-const HUGE_TEST: (&str, &str) = ("crates/accel/src/huge_array.rs", "arrays_hold_what_they_were_given");
+const HUGE_TEST: (&str, &str) = ("crates/memory/src/huge_array.rs", "arrays_hold_what_they_were_given");
 
 /// The sieve's kernels find the same runs.
 const SIEVE_TWIN_TEST: (&str, &str) =
     ("crates/photons/src/searches/brute_blocked/tests.rs", "all_kernels_find_the_same");
 
 const KERNELS: &[Kernel] = &[
-    Kernel { path: "crates/accel/src/huge_array.rs", twin_test: HUGE_TEST },
+    Kernel { path: "crates/memory/src/huge_array.rs", twin_test: HUGE_TEST },
     Kernel { path: "benches/peers/rays/src/engines/embree.rs", twin_test: EMBREE_TEST },
     Kernel { path: "crates/cli/src/allocator.rs", twin_test: ALLOCATOR_TEST },
     Kernel { path: "crates/photons/src/searches/brute_blocked/kernels.rs", twin_test: SIEVE_TWIN_TEST },

@@ -5,9 +5,9 @@ use super::binary::{BinaryNode, BinaryTree, PARALLEL_PRIMS, Place};
 use super::collapse::Leaves;
 use super::doubled::hide_doubled;
 use super::layout::{Child, MAX_INDEX, Node, TriangleBlock, WIDTH};
-use crate::huge_array::HugeArray;
 use arrayvec::ArrayVec;
 use photinus_geometry::Primitives;
+use photinus_memory::HugeArray;
 use rayon::prelude::*;
 
 /// The arrays of a wide tree.

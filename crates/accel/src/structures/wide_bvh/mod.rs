@@ -25,7 +25,6 @@ mod traverse;
 mod visits;
 
 use crate::hierarchy::shape::Shape;
-use crate::huge_array::HugeArray;
 use crate::list::method;
 use crate::options::{BuildError, BuildOptions, check};
 use crate::structure::{RayCounters, RefitError, Structure, StructureSummary};
@@ -36,6 +35,7 @@ use pace::Habit;
 use photinus_geometry::{Aabb, Hit, Primitives, Ray};
 use photinus_intersect::methods::woop::Woop;
 use photinus_intersect::{LeafTester, RtiMethod, sphere_tester};
+use photinus_memory::HugeArray;
 use std::sync::Arc;
 
 /// The name on the command line.

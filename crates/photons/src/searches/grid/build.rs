@@ -1,21 +1,26 @@
 //! Building the grid: box, keys, sort, blocks, table. Parallel, with the same bits on any number of threads.
 
-use super::blocks::{BLOCKS_A_TASK, Block, Boxes, LANES};
+use super::blocks::{Block, Boxes, LANES};
 use super::cells::Cells;
 use super::sort::{ITEMS_A_TASK, Item, Sorted, sort_by_key};
 use super::table::CellTable;
 use crate::{BuildOptions, Photon};
 use photinus_geometry::Aabb;
+use photinus_memory::HugeArray;
 use rayon::prelude::*;
+
+/// Arrays of as many bytes take huge pages: of small pages the processor knows about as much, and new ones for each map cost
+/// a third of the build of a small one.
+const HUGE: usize = 8 << 20;
 
 /// What building gives.
 pub(crate) struct Built {
     pub(crate) cells: Cells,
     pub(crate) table: CellTable,
-    pub(crate) blocks: Vec<Block>,
+    pub(crate) blocks: HugeArray<Block>,
     pub(crate) boxes: Boxes,
     /// The ids of each block's photons.
-    pub(crate) ids: Vec<[u32; LANES]>,
+    pub(crate) ids: HugeArray<[u32; LANES]>,
 }
 
 /// Photons in blocks, in the order of cells that suit the hint.
@@ -34,17 +39,16 @@ pub(crate) fn build(photons: Vec<Photon>, options: &BuildOptions) -> Built {
 fn arrange<I: Item>(photons: Vec<Photon>, cells: Cells) -> Built {
     let Sorted { staged, items } = sort_by_key::<I>(photons, cells.key_bits(), |p| cells.key(p.position()));
     let table = CellTable::new(&cells, &items);
-    let fill = |items: &[I]| {
+    let count = items.len().div_ceil(LANES);
+    let photons_of = |block: usize| items[block * LANES..].iter().take(LANES).map(|item| &staged[item.id() as usize]);
+    let (blocks, ids) = HugeArray::pair(count, HUGE, |i| {
         let (mut block, mut ids) = (Block::EMPTY, [u32::MAX; LANES]);
-        for (lane, item) in items.iter().enumerate() {
-            let [words @ .., id] = staged[item.id() as usize];
-            block.set(lane, words);
-            ids[lane] = id;
+        for (lane, [words @ .., id]) in photons_of(i).enumerate() {
+            block.set(lane, *words);
+            ids[lane] = *id;
         }
         (block, ids)
-    };
-    let (mut blocks, mut ids) = (Vec::new(), Vec::new());
-    items.par_chunks(LANES).with_min_len(BLOCKS_A_TASK).map(fill).unzip_into_vecs(&mut blocks, &mut ids);
+    });
     let boxes = Boxes::new(&blocks);
     Built { cells, table, blocks, boxes, ids }
 }

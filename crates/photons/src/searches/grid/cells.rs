@@ -81,11 +81,17 @@ impl Cells {
         morton - fine + u64::from(HILBERT[fine as usize])
     }
 
-    /// A key of 48 bits for the order of queries: the Morton key of the half cell, or of the nearest one.
+    /// Bits of a key for the order of queries.
+    pub(crate) fn order_bits(&self) -> u32 {
+        self.key_bits() - 3 * (FINE_LEVELS - 1)
+    }
+
+    /// A key for the order of queries: the Morton key of the half cell, or of the nearest one.
     #[inline]
     pub(crate) fn order(&self, p: Vec3) -> u64 {
         // Casts take NaN and what is below zero to zero.
-        let [x, y, z] = (self.place(p) * (2.0 / FINE)).to_array().map(|u| spread(u64::from(u as u16)));
+        let place = self.place(p).min(self.fine_count - 1.0) * (2.0 / FINE);
+        let [x, y, z] = place.to_array().map(|u| spread(u as u64));
         x | y << 1 | z << 2
     }
 

@@ -33,6 +33,7 @@ use crate::results::ResultSet;
 use crate::{
     BuildOptions, GatherQuery, Gathered, GatheredNearest, Kernel, Neighbor, Photon, Region, Search, SearchSummary,
 };
+use batch::MOST_A_TASK;
 use blocks::{Block, Boxes, LANES};
 use build::{Built, build};
 use candidates::Candidates;
@@ -40,6 +41,7 @@ use cells::Cells;
 use kernels::{NormalMemo, Selected, VectorKernels};
 use narrow::NearestFinder;
 use photinus_geometry::Vec3;
+use photinus_memory::HugeArray;
 use photinus_profile::SearchCounters;
 use rayon::prelude::*;
 use reach::Scratch;
@@ -48,17 +50,14 @@ use table::CellTable;
 
 pub(crate) const ABOUT: &str = "sorted uniform grid with vector kernels";
 
-/// Queries that are worth a task of their own.
-const QUERIES_A_TASK: usize = 2048;
-
 /// The finished grid.
 pub(crate) struct Grid {
     cells: Cells,
     table: CellTable,
-    blocks: Vec<Block>,
+    blocks: HugeArray<Block>,
     boxes: Boxes,
     /// The ids of each block's photons.
-    ids: Vec<[u32; LANES]>,
+    ids: HugeArray<[u32; LANES]>,
     photon_count: usize,
     /// The slot of each id's photon; made when first asked for.
     slots: OnceLock<Vec<u32>>,
@@ -95,7 +94,8 @@ impl Grid {
 impl Search for Grid {
     fn gather(&self, queries: &[GatherQuery], kernel: Kernel, out: &mut [Gathered]) {
         assert_eq!(queries.len(), out.len(), "one result a query");
-        let parts = queries.par_chunks(QUERIES_A_TASK).zip(out.par_chunks_mut(QUERIES_A_TASK));
+        let share = self.share(queries);
+        let parts = queries.par_chunks(share).zip(out.par_chunks_mut(share));
         parts.for_each(|(queries, out)| self.gather_part(queries, kernel, out));
     }
 
@@ -107,7 +107,7 @@ impl Search for Grid {
         counters: &mut SearchCounters,
     ) {
         assert_eq!(queries.len(), out.len(), "one result a query");
-        for (queries, out) in queries.chunks(QUERIES_A_TASK).zip(out.chunks_mut(QUERIES_A_TASK)) {
+        for (queries, out) in queries.chunks(MOST_A_TASK).zip(out.chunks_mut(MOST_A_TASK)) {
             self.gather_part(queries, kernel, out);
         }
         let mut scratch = Scratch::new();
@@ -238,9 +238,9 @@ impl Search for Grid {
     }
 
     fn summary(&self) -> SearchSummary {
-        let bytes = self.blocks.capacity() * size_of::<Block>()
+        let bytes = size_of_val(&self.blocks[..])
             + self.boxes.bytes()
-            + self.ids.capacity() * size_of::<[u32; LANES]>()
+            + size_of_val(&self.ids[..])
             + self.slots.get().map_or(0, |s| s.capacity() * size_of::<u32>())
             + self.table.bytes();
         SearchSummary {

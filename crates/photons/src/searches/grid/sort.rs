@@ -176,7 +176,7 @@ fn count_buckets(keys: &[u64], bucket: impl Fn(u64) -> usize + Sync, buckets: us
 }
 
 /// Sorts items whose keys differ in their lowest `bits` bits only, and which are in the order of their ids.
-fn sort_items<I: Item>(items: &mut [I], bits: u32, scratch: &mut Vec<I>) {
+pub(super) fn sort_items<I: Item>(items: &mut [I], bits: u32, scratch: &mut Vec<I>) {
     if items.len() < FEW || bits == 0 {
         items.sort_unstable();
         return;

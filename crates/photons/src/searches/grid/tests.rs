@@ -132,6 +132,39 @@ fn a_large_map_is_laid_out_alike_by_any_number_of_threads() {
     }
 }
 
+/// Few queries over many photons, which are fetched ahead, and many, which are sorted; both with some that are none or far out.
+#[test]
+fn large_batches_over_a_large_map_find_what_single_queries_find() {
+    let size = Vec3::new(4.0, 3.0, 5.0);
+    let photons = support::photons(14, 150_000, |s| support::on_box(s, size));
+    let radius = 0.05;
+    let grid = Grid::new(photons, &BuildOptions { radius_hint: radius });
+    for count in [600, 20_000] {
+        let mut queries: Vec<GatherQuery> = (0..count)
+            .map(|i| {
+                let (position, normal) = support::on_box(&mut support::sampler(15, i), size);
+                GatherQuery { position, radius, normal, max_depth: 100 }
+            })
+            .collect();
+        queries[17].position = Vec3::splat(1e30);
+        queries[18].position.x = f32::NAN;
+        queries[19].position = Vec3::splat(-7.0);
+        queries[20].radius = f32::NAN;
+        queries[21].radius = 0.0;
+        queries[22].radius = f32::INFINITY;
+        let mut expected = vec![Gathered::default(); count];
+        for (query, out) in queries.iter().zip(&mut expected) {
+            grid.gather(std::slice::from_ref(query), Kernel::Constant, std::slice::from_mut(out));
+        }
+        for threads in [1, 2, 7] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let mut out = vec![Gathered::default(); count];
+            pool.install(|| grid.gather(&queries, Kernel::Constant, &mut out));
+            assert_eq!(bits(&out), bits(&expected), "seeds 14 and 15: {count} queries, {threads} threads");
+        }
+    }
+}
+
 /// Queries as close to one another as numbers are, whose middle is none: radius 0 finds what lies at the very position, in
 /// whatever company.
 #[test]

@@ -34,21 +34,38 @@ unsafe impl<T: Sync> Sync for HugeArray<T> {}
 impl<T: Send> HugeArray<T> {
     /// The array of `len` elements that `element` gives by their indices, in any order and on all threads.
     pub fn new(len: usize, element: impl Fn(usize) -> T + Sync) -> Self {
-        const { assert!(!std::mem::needs_drop::<T>() && size_of::<T>() > 0 && align_of::<T>() <= PAGE) }
-        let out = Self::room(len);
-        // SAFETY: there is room for `len` elements, which need not be written yet, and nobody else knows of it. Should
-        // `element` panic, nothing that was written needs to be dropped, and `out` frees the room.
-        let room = unsafe { std::slice::from_raw_parts_mut(out.start.as_ptr().cast::<MaybeUninit<T>>(), len) };
-        room.par_iter_mut().with_min_len(SHARE).enumerate().for_each(|(i, place)| {
+        let mut out = Self::room(len, LEAST);
+        let places = out.places().into_par_iter().with_min_len(SHARE);
+        places.enumerate().for_each(|(i, place)| {
             place.write(element(i));
         });
         out
     }
 
-    /// Room for `len` elements.
-    fn room(len: usize) -> Self {
+    /// Two arrays of `len` elements, which `element` gives by their indices; from `least` bytes on each takes huge pages.
+    pub fn pair<U: Send>(len: usize, least: usize, element: impl Fn(usize) -> (T, U) + Sync) -> (Self, HugeArray<U>) {
+        let (mut first, mut second) = (Self::room(len, least), HugeArray::room(len, least));
+        let places = first.places().into_par_iter().zip(second.places()).with_min_len(SHARE);
+        places.enumerate().for_each(|(i, (first, second))| {
+            let (a, b) = element(i);
+            first.write(a);
+            second.write(b);
+        });
+        (first, second)
+    }
+
+    /// The elements of an array that was just made, all to be written. Should whoever does it panic, nothing that was
+    /// written needs to be dropped, and the array frees its room.
+    fn places(&mut self) -> &mut [MaybeUninit<T>] {
+        // SAFETY: there is room for `len` elements, which need not be written yet, and nobody else has a reference to it.
+        unsafe { std::slice::from_raw_parts_mut(self.start.as_ptr().cast::<MaybeUninit<T>>(), self.len) }
+    }
+
+    /// Room for `len` elements, on huge pages from `least` bytes on.
+    fn room(len: usize, least: usize) -> Self {
+        const { assert!(!std::mem::needs_drop::<T>() && size_of::<T>() > 0 && align_of::<T>() <= PAGE) }
         let layout = Self::layout(len);
-        let own = if layout.size() >= LEAST { Pages::new(layout.size()) } else { None };
+        let own = if layout.size() >= least { Pages::new(layout.size()) } else { None };
         if let Some(pages) = own {
             return Self { start: pages.first().cast(), len, pages: own };
         }
@@ -161,6 +178,15 @@ mod tests {
             assert!(array.iter().zip(0..).all(|(x, i)| *x == 3 * i), "{len}");
             let has_pages = cfg!(all(target_os = "linux", not(miri))) && len >= LEAST / 8;
             assert!(!has_pages || array.as_ptr().addr().is_multiple_of(PAGE));
+        }
+    }
+
+    #[test]
+    fn pairs_hold_what_they_were_given() {
+        for len in [0, 1, 100, PAGE / 8 - 1, PAGE / 8, PAGE / 2] {
+            let (longs, bytes) = HugeArray::pair(len, PAGE, |i| (i as u64 * 3, i as u8));
+            assert!(longs.iter().zip(&bytes[..]).zip(0..).all(|((x, y), i)| *x == 3 * i && *y == i as u8), "{len}");
+            assert_eq!((longs.len(), bytes.len()), (len, len));
         }
     }
 
