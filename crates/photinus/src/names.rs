@@ -65,6 +65,26 @@ pub const SEARCH: Family = Family {
     },
 };
 
+/// Supports of photon estimates.
+pub const SUPPORT: Family = Family {
+    what: "support of estimates",
+    default: photinus_photons::DEFAULT_SUPPORT,
+    list: || {
+        let supports = photinus_photons::SUPPORTS.iter();
+        supports.map(|member| Member { name: member.name, summary: member.about }).collect()
+    },
+};
+
+/// Kernels of photon estimates; which is used where none is named depends on the mode.
+pub const KERNEL: Family = Family {
+    what: "kernel of estimates",
+    default: "epanechnikov",
+    list: || {
+        let kernels = photinus_photons::KERNELS.iter();
+        kernels.map(|member| Member { name: member.name, summary: member.about }).collect()
+    },
+};
+
 /// Ways to find light.
 pub const MODE: Family =
     Family { what: "mode", default: "progressive", list: || MODES.iter().map(|(member, _)| *member).collect() };
@@ -280,7 +300,8 @@ fn nearest<'a>(wanted: &str, names: &[&'a str]) -> Option<&'a str> {
 mod tests {
     use super::*;
 
-    const ALL: &[Family] = &[SCENES, ACCEL, INTERSECT, SEARCH, MODE, AOV, TONEMAP, SURFACE_MODEL, CANDIDATES, BACKEND];
+    const ALL: &[Family] =
+        &[SCENES, ACCEL, INTERSECT, SEARCH, SUPPORT, KERNEL, MODE, AOV, TONEMAP, SURFACE_MODEL, CANDIDATES, BACKEND];
 
     #[test]
     fn every_family_has_its_default_and_no_name_twice() {

@@ -1,6 +1,6 @@
 //! What this crate refuses.
 
-use crate::SEARCHES;
+use crate::{KERNELS, SEARCHES, SUPPORTS};
 use photinus_geometry::Vec3;
 
 /// Why a photon was refused, or a search not built.
@@ -19,13 +19,19 @@ pub enum PhotonError {
     #[error("photon normal {0} is no direction")]
     Normal(Vec3),
     /// No search has this name.
-    #[error("no photon search is called '{0}'; there are: {names}", names = names())]
+    #[error("no photon search is called '{0}'; there are: {names}", names = names(SEARCHES.iter().map(|m| m.name)))]
     UnknownSearch(String),
+    /// No support of estimates has this name.
+    #[error("no support of estimates is called '{0}'; there are: {names}", names = names(SUPPORTS.iter().map(|s| s.name)))]
+    UnknownSupport(String),
+    /// No kernel has this name.
+    #[error("no kernel is called '{0}'; there are: {names}", names = names(KERNELS.iter().map(|k| k.name)))]
+    UnknownKernel(String),
     /// More photons than a search can number.
     #[error("{0} photons are more than a search holds (2^30); store fewer a pass")]
     TooManyPhotons(usize),
 }
 
-fn names() -> String {
-    SEARCHES.iter().map(|m| m.name).collect::<Vec<_>>().join(", ")
+fn names(names: impl Iterator<Item = &'static str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
 }

@@ -1,5 +1,7 @@
 //! The weight of a photon by its distance from the middle of a search.
 
+use crate::PhotonError;
+
 /// Weight of a photon at distance d from the middle of a search of radius r. All integrate to one over the disc when
 /// divided by [`Kernel::area`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +36,12 @@ impl Kernel {
     /// Integral of the weight over the disc of radius `r`, scene units squared: the sum of weight * flux divided by
     /// it estimates irradiance.
     pub fn area(self, r: f32) -> f32 {
-        let share = match self {
+        self.share() * std::f32::consts::PI * (r * r)
+    }
+
+    /// The mean of the weight over the disc.
+    pub(crate) fn share(self) -> f32 {
+        match self {
             Self::Constant => 1.0,
             Self::Cone { k } => 1.0 - 2.0 / (3.0 * cone_k(k)),
             Self::Epanechnikov => 0.5,
@@ -44,9 +51,70 @@ impl Kernel {
                 let mean = 1.0 - 2.0 / b * (1.0 - libm::exp(-b / 2.0));
                 (0.918 * (1.0 - mean / (1.0 - libm::exp(-b)))) as f32
             }
-        };
-        share * std::f32::consts::PI * (r * r)
+        }
     }
+
+    /// The share of the integral over the disc that lies within a distance d, by (d/r)^2.
+    fn part_within(self, u: f64) -> f64 {
+        let integral = match self {
+            Self::Constant => u,
+            Self::Cone { k } => u - 2.0 / (3.0 * f64::from(cone_k(k))) * u * u.sqrt(),
+            Self::Epanechnikov => u - 0.5 * u * u,
+            Self::Gaussian => {
+                let b = 1.953f64;
+                let mean = u - 2.0 / b * (1.0 - libm::exp(-b * u / 2.0));
+                0.918 * (u - mean / (1.0 - libm::exp(-b)))
+            }
+        };
+        integral / f64::from(self.share())
+    }
+
+    /// The square of a distance over the radius, 0 to 1, within which a share `part` of the kernel's integral lies: for a
+    /// `part` that is uniform in 0..1 it belongs to a point that is drawn in proportion to the kernel.
+    pub fn square_within(self, part: f32) -> f32 {
+        match self {
+            Self::Constant => part,
+            Self::Epanechnikov => 1.0 - (1.0 - part).sqrt(),
+            Self::Cone { .. } | Self::Gaussian => {
+                let (mut low, mut high) = (0.0f64, 1.0f64);
+                // To the last bit of an f32 near 1.
+                for _ in 0..24 {
+                    let middle = 0.5 * (low + high);
+                    if self.part_within(middle) < f64::from(part) { low = middle } else { high = middle }
+                }
+                high as f32
+            }
+        }
+    }
+}
+
+/// A kernel that is chosen by name.
+#[derive(Clone, Copy, Debug)]
+pub struct KernelMember {
+    /// Command-line name.
+    pub name: &'static str,
+    /// One sentence for help and documentation.
+    pub about: &'static str,
+    /// The kernel.
+    pub kernel: Kernel,
+}
+
+/// All kernels that have a name.
+pub const KERNELS: &[KernelMember] = &[
+    KernelMember { name: "constant", about: "all photons alike", kernel: Kernel::Constant },
+    KernelMember { name: "cone", about: "1 - d/r, Jensen's cone with k = 1", kernel: Kernel::Cone { k: 1.0 } },
+    KernelMember { name: "epanechnikov", about: "1 - (d/r)^2", kernel: Kernel::Epanechnikov },
+    KernelMember { name: "gaussian", about: "Jensen's Gaussian", kernel: Kernel::Gaussian },
+];
+
+/// The kernel of a command-line name; underscores count as hyphens.
+///
+/// # Errors
+/// No such kernel.
+pub fn find_kernel(name: &str) -> Result<Kernel, PhotonError> {
+    let wanted = name.replace('_', "-");
+    let member = KERNELS.iter().find(|member| member.name == wanted);
+    member.map(|member| member.kernel).ok_or_else(|| PhotonError::UnknownKernel(name.to_owned()))
 }
 
 /// Jensen's k with what is out of range, NaN included, made 1.
@@ -108,6 +176,24 @@ mod tests {
                     .sum();
                 let area = f64::from(kernel.area(r));
                 assert!((sum / area - 1.0).abs() < 1e-5, "{kernel:?} {r}: {sum} {area}");
+            }
+        }
+    }
+
+    #[test]
+    fn parts_of_the_integral_are_found_again() {
+        for kernel in KERNELS {
+            assert_eq!(kernel.square_within(0.0).round(), 0.0, "{kernel:?}");
+            assert!((kernel.part_within(1.0) - 1.0).abs() < 1e-6, "{kernel:?}");
+            for i in 0..100 {
+                let part = i as f32 / 100.0;
+                let u = kernel.square_within(part);
+                assert!((0.0..=1.0).contains(&u), "{kernel:?} {part}: {u}");
+                assert!((kernel.part_within(f64::from(u)) - f64::from(part)).abs() < 1e-6, "{kernel:?} {part}: {u}");
+                // Against the weight itself, by the midpoint rule.
+                let weight = |j: u32| f64::from(kernel.weight(u * (j as f32 + 0.5) / 1000.0, 1.0));
+                let sum = (0..1000).map(weight).sum::<f64>() / 1000.0 * f64::from(u) / f64::from(kernel.share());
+                assert!((sum - f64::from(part)).abs() < 1e-5, "{kernel:?} {part}: {sum}");
             }
         }
     }

@@ -16,6 +16,7 @@ use photinus_geometry::{Hit, Ray, Vec3};
 use photinus_num::{Sampler, StreamKind};
 use photinus_photons::GatherQuery;
 use photinus_profile::queries::RayKind;
+use std::iter;
 
 /// Levels followed where neither the scene nor the user limits them: 2^8 rays a pixel at the very most.
 pub(crate) const DEFAULT_LEVELS: u32 = 8;
@@ -81,8 +82,10 @@ impl EyePass<'_> {
     /// As [`EyePass::run`], by the thesis's recursion.
     pub fn run_direct(&self, maps: &Maps, film: &mut [f32], observer: &dyn Observer) -> Result<Counters, Cancelled> {
         match maps.knn {
-            // Searches are recorded beside the rays that ask for them, tile by tile.
-            Some(k) if self.world.recorder.is_none() => self.run_waves(maps, k, film, observer),
+            // Searches are recorded beside the rays that ask for them, tile by tile; and waves know one map.
+            Some(k) if self.world.recorder.is_none() && maps.caustic.is_none() => {
+                self.run_waves(maps, k, film, observer)
+            }
             _ => self.run_alone(maps, film, observer),
         }
     }
@@ -156,12 +159,14 @@ impl EyePass<'_> {
         if let Some(pooled) = pooled {
             asking.file(&maps.global, pooled);
         }
-        maps.global.estimate(&estimates.list, estimates, maps.knn, twin, scratch, found, counters);
-        // Those that might be pooled come last, as where they are: the picture is the same to the last bit.
-        for last in [false, true] {
-            let made = estimates.list.iter().zip(&*found);
-            for (e, found) in made.filter(|(e, _)| matches!(e.scatter, Scatter::Constant(_)) == last) {
-                tile.estimated(e.path, found.radiance, found.density);
+        for map in iter::once(&maps.global).chain(&maps.caustic) {
+            map.estimate(&estimates.list, estimates, maps.knn, twin, scratch, found, counters);
+            // Those that might be pooled come last, as where they are: the picture is the same to the last bit.
+            for last in [false, true] {
+                let made = estimates.list.iter().zip(&*found);
+                for (e, found) in made.filter(|(e, _)| matches!(e.scatter, Scatter::Constant(_)) == last) {
+                    tile.estimated(map.kind, e.path, found.radiance, found.density);
+                }
             }
         }
         scratch.hand_over(tracer);

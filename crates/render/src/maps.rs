@@ -6,7 +6,7 @@ use crate::recording::{search_record, sum};
 use crate::trace::Tracer;
 use crate::twin::Twin;
 use photinus_geometry::Vec3;
-use photinus_photons::{GatherQuery, Gathered, GatheredNearest, Kernel, Photon, Search};
+use photinus_photons::{GatherQuery, Gathered, GatheredNearest, Kernel, Photon, Search, Support};
 use photinus_profile::queries::{MapKind, SearchAnswer, SearchRecord};
 use photinus_profile::{SearchCounters, ticks, undisturbed};
 use std::ops::Range;
@@ -18,6 +18,8 @@ pub(crate) struct Map {
     /// Gather radius of this pass, scene units.
     pub radius: f32,
     pub kernel: Kernel,
+    /// What the search looks for; none: balls, as it does by itself.
+    pub support: Option<&'static Support>,
 }
 
 /// The maps of one pass.
@@ -252,7 +254,7 @@ impl Map {
             if let Some(records) = records {
                 records.push(search_record(self.kind, self.kernel, e.ray, query, found.count, sum(found.flux)));
             }
-            out[i] = self.estimated(e, found.flux, found.count, query.radius);
+            out[i] = self.estimated(e, query, found.flux, found.count, query.radius);
         }
     }
 
@@ -280,21 +282,38 @@ impl Map {
                 let answer = SearchAnswer::Nearest { k, farthest_sq: found.farthest_sq };
                 records.push(search_record(self.kind, self.kernel, e.ray, query, found.count, answer));
             }
-            out[i] = self.estimated(e, found.flux, found.count, found.radius(query, k));
+            out[i] = self.estimated(e, query, found.flux, found.count, found.radius(query, k));
         }
     }
 
     /// Radiance by the sum of weighted flux within a radius.
-    fn estimated(&self, e: &Estimate, flux: Vec3, count: u32, radius: f32) -> Estimated {
+    fn estimated(&self, e: &Estimate, query: &GatherQuery, flux: Vec3, count: u32, radius: f32) -> Estimated {
         let Scatter::Constant(factor) = e.scatter else { return Estimated::default() };
-        let Found { irradiance, density } = self.found(flux, count, radius);
+        let Found { irradiance, density } = self.found(query, flux, count, radius);
         Estimated { radiance: e.throughput * factor * irradiance, density, radius }
     }
 
-    /// The light that so much weighted flux within a radius is.
-    pub fn found(&self, flux: Vec3, count: u32, radius: f32) -> Found {
-        let irradiance = flux / self.kernel.area(radius.max(LEAST_RADIUS));
-        Found { irradiance, density: density(count, radius) }
+    /// The light that so much weighted flux of a query is, within a radius.
+    pub fn found(&self, query: &GatherQuery, flux: Vec3, count: u32, radius: f32) -> Found {
+        let irradiance = flux / self.area(query, radius.max(LEAST_RADIUS));
+        Found { irradiance, density: self.density(query, count, radius) }
+    }
+
+    /// Integral of the kernel over the surface within a radius.
+    fn area(&self, query: &GatherQuery, radius: f32) -> f32 {
+        match self.support {
+            None => self.kernel.area(radius),
+            Some(support) => support.area(self.kernel, query.normal, radius),
+        }
+    }
+
+    /// Photons per area.
+    fn density(&self, query: &GatherQuery, count: u32, radius: f32) -> f32 {
+        let area = match self.support {
+            None => std::f32::consts::PI * radius * radius,
+            Some(support) => support.area(Kernel::Constant, query.normal, radius),
+        };
+        count as f32 / area.max(1e-20)
     }
 
     /// The map's radius, or the pixel's where that is wider (of each of its places, where there are several), up to
@@ -340,8 +359,8 @@ impl Map {
             records.push(search_record(self.kind, self.kernel, e.ray, query, count, SearchAnswer::Visited));
         }
         Estimated {
-            radiance: e.throughput * sum / self.kernel.area(query.radius),
-            density: density(count, query.radius),
+            radiance: e.throughput * sum / self.area(query, query.radius),
+            density: self.density(query, count, query.radius),
             radius: query.radius,
         }
     }
@@ -374,18 +393,13 @@ impl Map {
         for (photon, d2) in visited {
             sum += scattered(bsdf, photon.direction()) * photon.flux() * self.kernel.weight(*d2, radius);
         }
-        let area = self.kernel.area(radius.max(LEAST_RADIUS));
-        Estimated { radiance: e.throughput * sum / area, density: density(count, radius), radius }
+        let area = self.area(query, radius.max(LEAST_RADIUS));
+        Estimated { radiance: e.throughput * sum / area, density: self.density(query, count, radius), radius }
     }
 }
 
 /// Photons that all lie at the very place asked about are spread over a disc of this radius, scene units.
 const LEAST_RADIUS: f32 = 1e-18;
-
-/// Photons per area.
-fn density(count: u32, radius: f32) -> f32 {
-    count as f32 / (std::f32::consts::PI * radius * radius).max(1e-20)
-}
 
 /// Makes `count` estimates, run by run, as `work(run, counted, counters)` does: their time is taken, and what share
 /// of it the searches have where runs are counted.

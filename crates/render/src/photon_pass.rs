@@ -35,6 +35,8 @@ const MOST_LINEAGES: u32 = u32::MAX / LARGEST_FAMILY - 1;
 pub(crate) enum Keep {
     /// All of them, in one map: estimates give all of the light.
     All,
+    /// All of them, those that came by mirror-like bounces only in the caustic map, all others in the global map.
+    AllApart,
     /// Those whose light no shadow ray finds: after a diffuse bounce in the global map, after mirror-like bounces only
     /// in the caustic map.
     Indirect,
@@ -358,7 +360,7 @@ impl PhotonPass<'_> {
     ) {
         let caustic = walk.specular_only && walk.depth > 1;
         let wanted = match self.keep {
-            Keep::All => true,
+            Keep::All | Keep::AllApart => true,
             Keep::Indirect => walk.depth > 1,
             Keep::Caustic => caustic,
         };
@@ -444,5 +446,51 @@ fn guided_sample(
 fn add(sum: &mut [f64; 3], flux: Vec3) {
     for (s, f) in sum.iter_mut().zip(flux.to_array()) {
         *s += f64::from(f);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::SurfaceModel;
+    use crate::control::Silent;
+    use crate::light::SkyView;
+    use crate::world::Compiled;
+
+    /// Two maps hold together what one map holds: each photon once, word for word.
+    #[test]
+    fn maps_apart_hold_every_photon_once() {
+        let compiled = Compiled::new(photinus_scene::builtin::build("two-spheres").expect("it is built in"));
+        let options = photinus_accel::BuildOptions::default();
+        let structure =
+            photinus_accel::build("wide-bvh", compiled.primitives().clone(), &options).expect("a small scene");
+        let world = compiled.with_structure(structure, SurfaceModel::Physical);
+        let region = VisibleRegion { center: Vec3::splat(2.75), radius: 5.0 };
+        let mut lights = Lights::new(&world, region, &SkyView::new());
+        lights.begin_pass(7, 0);
+        let pass = |keep| PhotonPass {
+            seed: 7,
+            kind: StreamKind::Photon,
+            pass: 0,
+            count: 10_000,
+            max_depth: 127,
+            keep,
+            guide: None,
+            together: None,
+            window: None,
+            profile_every: 0,
+        };
+        let stored = |keep| pass(keep).run(&world, &lights, &Silent).expect("nothing stops it");
+        let ((one, counted), (two, counted_apart)) = (stored(Keep::All), stored(Keep::AllApart));
+        let words = |photons: &[&[Photon]]| {
+            let mut words: Vec<_> = photons.iter().copied().flatten().map(Photon::to_words).collect();
+            words.sort_unstable();
+            words
+        };
+        assert!(one.caustic.is_empty() && two.caustic.len() > 100 && two.global.len() > 5000, "seed 7");
+        assert_eq!(words(&[&one.global]), words(&[&two.global, &two.caustic]), "seed 7");
+        assert!(two.caustic.iter().all(Photon::is_caustic) && !two.global.iter().any(Photon::is_caustic), "seed 7");
+        assert_eq!(counted.photons.power, counted_apart.photons.power, "seed 7");
+        assert_eq!(counted_apart.photons.stored_caustic, two.caustic.len() as u64, "seed 7");
     }
 }

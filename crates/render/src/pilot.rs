@@ -299,13 +299,14 @@ pub(crate) fn photon_outlook(
     observer: &dyn Observer,
 ) -> Result<PhotonOutlook, Cancelled> {
     let radius = radius.map(|radius| Radii { global: radius, caustic: radius });
-    let only_memory = radius.filter(|_| pass.keep == Keep::All);
+    let keeps_all = matches!(pass.keep, Keep::All | Keep::AllApart);
+    let only_memory = radius.filter(|_| keeps_all);
     let count = photons.min(if only_memory.is_some() { MEMORY_PHOTONS } else { PHOTONS });
     let pilot = PhotonPass { count, ..pilot_pass(pass, photons) };
     let (mut stored, mut counters) = pilot.run(world, lights, observer)?;
     let mut window = match pass.keep {
         Keep::Indirect => PhotonWindow::learn(world, lights.region(), points, &stored.global, pass.seed),
-        Keep::All | Keep::Caustic => None,
+        Keep::All | Keep::AllApart | Keep::Caustic => None,
     };
     for _ in 0..WINDOW_ROUNDS {
         let Some(wanted) = &window else { break };
@@ -328,7 +329,7 @@ pub(crate) fn photon_outlook(
     let positions: Vec<Vec3> = points.iter().map(|p| p.position).collect();
     let global = typical_distance(&positions, global_search.as_deref(), 0.5).map(|r| r * scale(GLOBAL_TARGET));
     let global = global.unwrap_or(fallback).max(width).max(1e-9);
-    if pass.keep == Keep::All {
+    if keeps_all {
         return Ok(PhotonOutlook {
             radii: Radii { global, caustic: global },
             stored: stored_plain,

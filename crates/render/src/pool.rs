@@ -135,7 +135,7 @@ impl Task<'_> {
         for piece in self.pieces {
             let found = self.found[piece.list as usize].split_off_mut(..piece.count as usize).unwrap_or_default();
             for (found, (query, nearest)) in found.iter_mut().zip(&mut answers) {
-                *found = map.found(nearest.flux, nearest.count, nearest.radius(query, k));
+                *found = map.found(query, nearest.flux, nearest.count, nearest.radius(query, k));
             }
         }
     }

@@ -19,7 +19,9 @@ use crate::settings::{Mode, Settings};
 use crate::waves::{ESTIMATES_A_PIXEL, WAVE_ESTIMATES};
 use crate::world::World;
 use photinus_num::StreamKind;
-use photinus_photons::{BuildOptions, Kernel, Photon, PhotonError};
+use photinus_photons::{
+    BuildOptions, DEFAULT_SUPPORT, Kernel, Photon, PhotonError, Support, find_kernel, find_support,
+};
 use photinus_profile::queries::{Block, BlockKey, MapKind, Stage};
 use photinus_scene::Light;
 use rayon::prelude::*;
@@ -58,6 +60,9 @@ pub struct Renderer<'w> {
     photons: u32,
     lights: Lights,
     radii: Radii,
+    kernel: Kernel,
+    /// None: balls.
+    support: Option<&'static Support>,
     /// Photons of their own for caustics.
     caustics: Option<CausticPlan>,
     /// How strong photons should be.
@@ -82,6 +87,8 @@ impl<'w> Renderer<'w> {
     /// Looks at the scene: what is visible, which radii fit.
     pub fn new(world: &'w World, settings: Settings, observer: &dyn Observer) -> Result<Self, RenderError> {
         observer.begin(Phase::Pilot, 0);
+        let kernel = find_kernel(settings.kernel_name())?;
+        let support = Some(find_support(&settings.support)?).filter(|support| support.name != DEFAULT_SUPPORT);
         let camera = CameraModel::new(&world.camera, &world.film);
         let crop = world.film.crop.unwrap_or([0, 0, world.film.width, world.film.height]);
         let mut aovs = settings.aovs.clone();
@@ -130,10 +137,11 @@ impl<'w> Renderer<'w> {
             photons,
             probe: lights.has_environment() || view.lamps_are_wide(),
             shadow_rays,
-            cut_pixels: matches!(settings.mode, Mode::Progressive | Mode::Gather)
-                .then(|| CutPixels::new(crop[2], crop[3])),
+            cut_pixels: settings.corrects_edges().then(|| CutPixels::new(crop[2], crop[3])),
             lights,
             radii: Radii { global: 1.0, caustic: 1.0 },
+            kernel,
+            support,
             caustics: None,
             window: None,
             stored: [0; 2],
@@ -169,6 +177,9 @@ impl<'w> Renderer<'w> {
                 renderer.settings.radius,
                 observer,
             )?;
+            if let Some(radius) = renderer.settings.caustic_radius {
+                renderer.radii.caustic = radius;
+            }
         }
         Ok(renderer)
     }
@@ -243,7 +254,11 @@ impl<'w> Renderer<'w> {
             count: self.photons,
             // The estimate's own edge to the camera is the last one.
             max_depth: if self.settings.mode == Mode::Direct { 127 } else { self.max_depth.saturating_sub(1) },
-            keep: if self.settings.mode == Mode::Direct { Keep::All } else { Keep::Indirect },
+            keep: match (self.settings.mode, self.settings.caustic_radius) {
+                (Mode::Direct, None) => Keep::All,
+                (Mode::Direct, Some(_)) => Keep::AllApart,
+                _ => Keep::Indirect,
+            },
             guide: None,
             together: self.caustics.as_ref().map(|plan| Together {
                 guide: &plan.guide,
@@ -353,7 +368,7 @@ impl<'w> Renderer<'w> {
         }
         self.counters += counters;
         observer.begin(Phase::MapBuild, pass);
-        let kernel = if self.settings.mode == Mode::Progressive { Kernel::Epanechnikov } else { Kernel::Constant };
+        let (kernel, support) = (self.kernel, self.support);
         let name = &self.settings.search;
         let map = |kind: MapKind, photons: Vec<Photon>, radius| -> Result<Map, PhotonError> {
             if let Some(recorder) = &self.world.recorder {
@@ -362,7 +377,12 @@ impl<'w> Renderer<'w> {
                 recorder.record(&Block { photons, ..Block::new(key) });
             }
             let options = BuildOptions { radius_hint: radius };
-            Ok(Map { kind, search: photinus_photons::build(name, photons, &options)?, radius, kernel })
+            let search = photinus_photons::build(name, photons, &options)?;
+            let search = match support {
+                None => search,
+                Some(support) => support.over(search),
+            };
+            Ok(Map { kind, search, radius, kernel, support })
         };
         Ok(Maps {
             global: map(MapKind::Global, global, radii.global)?,

@@ -1,6 +1,7 @@
 //! What a render is to do.
 
 use crate::film::Aov;
+use photinus_photons::{DEFAULT_SUPPORT, find_support};
 use serde::Serialize;
 
 /// How light is found.
@@ -47,8 +48,15 @@ pub struct Settings {
     /// Gather radius in scene units: fixed in direct and gather, of the first pass in progressive; none: chosen from
     /// the pixel's footprint and the photon density at visible points.
     pub radius: Option<f32>,
+    /// Gather radius of caustics in scene units, fixed or first as the other one. In direct it takes caustic photons into a
+    /// map of their own. None: as the other radius where that is given, chosen in progressive and gather, one map in direct.
+    pub caustic_radius: Option<f32>,
     /// Most photons of one estimate, the nearest; none: no limit.
     pub knn: Option<u32>,
+    /// Support of an estimate, by its name.
+    pub support: String,
+    /// Kernel of an estimate, by its name; none: Epanechnikov's in progressive, else the constant one.
+    pub kernel: Option<String>,
     /// Eye samples a pixel and pass, at least 1.
     pub spp: u32,
     /// Most edges of a path, camera to light: 1 sees emission only; none: as the scene says, or no limit.
@@ -66,13 +74,33 @@ pub struct Settings {
     pub profile_every: u32,
 }
 
+impl Settings {
+    /// Name of the kernel of its estimates.
+    pub fn kernel_name(&self) -> &str {
+        self.kernel.as_deref().unwrap_or(match self.mode {
+            Mode::Progressive => "epanechnikov",
+            _ => "constant",
+        })
+    }
+
+    /// Whether estimates whose support is cut by a wall or a rim are divided by what is there of it: where shadow rays give
+    /// the direct light, and the support is as good as the ball.
+    pub fn corrects_edges(&self) -> bool {
+        let is_ball = find_support(&self.support).is_ok_and(|support| support.is_ball);
+        is_ball && matches!(self.mode, Mode::Progressive | Mode::Gather)
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
             mode: Mode::Progressive,
             photons: None,
             radius: None,
+            caustic_radius: None,
             knn: None,
+            support: DEFAULT_SUPPORT.to_owned(),
+            kernel: None,
             spp: 1,
             max_depth: None,
             seed: 0,

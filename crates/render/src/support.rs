@@ -72,6 +72,8 @@ pub(crate) struct Look {
 struct Point {
     estimate: usize,
     position: Vec3,
+    /// Its squared distance from the middle.
+    distance_sq: f32,
     /// How far above or below it a photon may lie and be found, squared.
     depth_sq: f32,
     /// How far above the surface rays run along it.
@@ -203,14 +205,13 @@ impl Looker<'_> {
         for i in range {
             let step = |u: f32, by: u32| (u + unit_f32(i.wrapping_mul(by))).fract();
             let [u, v] = [step(shift[0], STEPS[0]), step(shift[1], STEPS[1])];
-            // The part of the kernel's integral within a distance d: d^2 / r^2 for the constant one, 2 s - s^2 of that for
-            // Epanechnikov's.
-            let s = if self.kernel == Kernel::Epanechnikov { 1.0 - (1.0 - u).sqrt() } else { u };
+            let s = self.kernel.square_within(u);
             let (sin, cos) = libm::sincosf(std::f32::consts::TAU * v);
             let distance = radius * s.sqrt();
             let mut point = Point {
                 estimate,
                 position: e.query.position + (frame.s * cos + frame.t * sin) * distance,
+                distance_sq: distance * distance,
                 depth_sq: (radius * radius * (1.0 - s)).max(0.0),
                 height: (radius * HEIGHT).max(e.offset),
                 offset: e.offset,
@@ -291,7 +292,13 @@ impl Looker<'_> {
     fn weight(&self, point: &Point, drop: f32) -> f32 {
         match self.kernel {
             Kernel::Epanechnikov if point.depth_sq > 0.0 => (1.0 - drop * drop / point.depth_sq).max(0.0),
-            _ => 1.0,
+            Kernel::Constant | Kernel::Epanechnikov => 1.0,
+            Kernel::Cone { .. } | Kernel::Gaussian => {
+                let radius = (point.distance_sq + point.depth_sq).sqrt();
+                let weight = |distance_sq: f32| self.kernel.weight(distance_sq.min(radius * radius), radius);
+                let own = weight(point.distance_sq);
+                if own > 0.0 { weight(point.distance_sq + drop * drop) / own } else { 1.0 }
+            }
         }
     }
 

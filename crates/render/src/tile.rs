@@ -6,6 +6,7 @@ use crate::film::{Aov, FilmLayout};
 use crate::film_filter::SharedFilter;
 use crate::maps::Estimated;
 use photinus_geometry::Vec3;
+use photinus_profile::queries::MapKind;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -160,9 +161,10 @@ impl Tile<'_> {
         self.add(pixel, Part::Emitted, radiance);
     }
 
-    /// An estimate from a map that holds all light.
-    pub fn estimated(&mut self, pixel: u32, radiance: Vec3, density: f32) {
-        self.add(pixel, Part::Indirect, radiance);
+    /// An estimate from a map of all light, or of its own part of it.
+    pub fn estimated(&mut self, map: MapKind, pixel: u32, radiance: Vec3, density: f32) {
+        let part = if map == MapKind::Global { Part::Indirect } else { Part::Caustic };
+        self.add(pixel, part, radiance);
         self.add_scalar(pixel, Aov::PhotonDensity, density);
     }
 

@@ -11,6 +11,7 @@ use crate::pooled::{Pooled, Use};
 use crate::tile::{Spare, Tile, Tiles, Together};
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
+use photinus_profile::queries::MapKind;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -210,7 +211,7 @@ impl EyePass<'_> {
         *tasks += done;
         wave.tiles.par_iter_mut().enumerate().for_each(|(number, Started { tile, pooled, .. })| {
             pool.found(number, pooled, |Use { factor, pixel }, found| {
-                tile.estimated(*pixel, *factor * found.irradiance, found.density);
+                tile.estimated(MapKind::Global, *pixel, *factor * found.irradiance, found.density);
             });
         });
         true

@@ -31,6 +31,18 @@ pub struct RenderArgs {
     /// pixel's footprint and the density of photons]
     #[arg(long, value_name = "R", value_parser = values::positive_f32, help_heading = "Light")]
     pub radius: Option<f32>,
+    /// Gather radius of caustics in scene units; in direct it puts caustic photons into a map of their own [default: as
+    /// --radius, or chosen; one map in direct]
+    #[arg(long, value_name = "R", value_parser = values::positive_f32, help_heading = "Light")]
+    pub caustic_radius: Option<f32>,
+    /// Where the photons of an estimate lie, and by which area their light is divided
+    #[arg(long, value_name = "NAME", default_value = names::SUPPORT.default, value_parser = parser(names::SUPPORT),
+        help_heading = "Light")]
+    pub support: String,
+    /// How photons of an estimate are weighted by their distance d within the radius r [default: epanechnikov in
+    /// progressive, else constant]
+    #[arg(long, value_name = "NAME", value_parser = parser(names::KERNEL), help_heading = "Light")]
+    pub kernel: Option<String>,
     /// Most photons of one estimate, the nearest [default: no limit]
     #[arg(long, value_name = "K", value_parser = values::count, help_heading = "Light")]
     pub knn: Option<u32>,

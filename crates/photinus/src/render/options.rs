@@ -1,7 +1,7 @@
 //! What a caller may choose about a render, and whether it makes sense.
 
 use super::Stop;
-use crate::names::{ACCEL, INTERSECT, SEARCH};
+use crate::names::{ACCEL, INTERSECT, KERNEL, SEARCH, SUPPORT};
 use crate::{Error, Result};
 use photinus_accel::BuildOptions;
 use photinus_geometry::Vec3;
@@ -85,11 +85,14 @@ impl RenderOptions {
         ACCEL.find(&self.accel)?;
         INTERSECT.find(&self.intersect)?;
         SEARCH.find(&self.settings.search)?;
+        SUPPORT.find(&self.settings.support)?;
+        KERNEL.find(self.settings.kernel_name())?;
         let positive = |option, value: Option<f32>| match value {
             Some(x) if !(x > 0.0 && x.is_finite()) => Err(Error::setting(option, "it must be a number above 0")),
             _ => Ok(()),
         };
         positive("--radius", self.settings.radius)?;
+        positive("--caustic-radius", self.settings.caustic_radius)?;
         positive("--tessellate", self.tessellate)?;
         let counted = |option, value: Option<u32>| match value {
             Some(0) => Err(Error::setting(option, "it must be at least 1")),
@@ -102,10 +105,42 @@ impl RenderOptions {
         if self.threads == Some(0) {
             return Err(Error::setting("--threads", "it must be at least 1"));
         }
-        if self.settings.mode == Mode::Path && self.settings.knn.is_some() {
-            return Err(Error::setting("--knn", "the path mode makes no estimates from photons; leave it out"));
-        }
+        self.check_estimates()?;
         self.stop.check()
+    }
+
+    /// Checks what is said about estimates against the mode and the record.
+    fn check_estimates(&self) -> Result<()> {
+        let settings = &self.settings;
+        let is_ball = SUPPORT.find(&settings.support)?.name == SUPPORT.default;
+        let of_estimates = [
+            ("--knn", settings.knn.is_some()),
+            ("--caustic-radius", settings.caustic_radius.is_some()),
+            ("--support", !is_ball),
+            ("--kernel", settings.kernel.is_some()),
+        ];
+        if let Some((option, _)) = of_estimates.iter().find(|(_, given)| *given && settings.mode == Mode::Path) {
+            return Err(Error::setting(option, "the path mode makes no estimates from photons; leave it out"));
+        }
+        if self.record_queries.is_some() {
+            let is_recorded = matches!(KERNEL.find(settings.kernel_name())?.name, "constant" | "epanechnikov");
+            let what = "records of queries know balls with the kernels constant and epanechnikov only; leave one of the two out";
+            match (is_ball, is_recorded) {
+                (false, _) => return Err(Error::setting("--support", what)),
+                (true, false) => return Err(Error::setting("--kernel", what)),
+                (true, true) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// What to say about estimates that are not corrected where they usually are.
+    pub(super) fn uncorrected_edges(&self) -> Option<String> {
+        let settings = &self.settings;
+        let is_usual = matches!(settings.mode, Mode::Progressive | Mode::Gather) && !settings.corrects_edges();
+        is_usual.then(|| {
+            format!("estimates over {} are dark at edges: they are corrected for balls only", settings.support)
+        })
     }
 
     /// Turns spheres into triangles where that is asked for; returns what to say about it.
@@ -178,6 +213,26 @@ mod tests {
         assert!(with(|o| o.settings.radius = Some(f32::NAN)).starts_with("--radius: "));
         assert!(with(|o| o.settings.photons = Some(0)).starts_with("--photons: "));
         assert!(with(|o| o.tessellate = Some(-1.0)).starts_with("--tessellate: "));
+        assert!(with(|o| o.settings.caustic_radius = Some(0.0)).starts_with("--caustic-radius: "));
+        assert!(with(|o| o.settings.support = "boxfixed".into()).contains("did you mean box-fixed?"));
+        assert!(with(|o| o.settings.kernel = Some("gauss".into())).contains("did you mean gaussian?"));
+        let path = || Settings { mode: Mode::Path, ..Settings::default() };
+        for (option, settings) in [
+            ("--knn: ", Settings { knn: Some(9), ..path() }),
+            ("--caustic-radius: ", Settings { caustic_radius: Some(1.0), ..path() }),
+            ("--support: ", Settings { support: "disc".into(), ..path() }),
+            ("--kernel: ", Settings { kernel: Some("cone".into()), ..path() }),
+        ] {
+            let options = RenderOptions { settings, ..RenderOptions::default() };
+            assert!(options.check().unwrap_err().to_string().starts_with(option), "{option}");
+        }
+        let mut options = RenderOptions { record_queries: Some("q".into()), ..RenderOptions::default() };
+        options.settings.kernel = Some("constant".into());
+        options.check().unwrap();
+        options.settings.kernel = Some("gaussian".into());
+        assert!(options.check().unwrap_err().to_string().starts_with("--kernel: "));
+        options.settings.support = "box_polygon".into();
+        assert!(options.check().unwrap_err().to_string().starts_with("--support: "));
         assert!(with(|o| o.threads = Some(0)).starts_with("--threads: "));
         assert!(with(|o| o.accel = "wide-bhv".into()).contains("did you mean wide-bvh?"));
         assert!(with(|o| o.stop.time_secs = Some(f64::INFINITY)).starts_with("--time: "));

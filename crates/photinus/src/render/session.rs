@@ -13,7 +13,7 @@ use crate::{Error, Result};
 use photinus_accel::{BuildOptions, StructureSummary};
 use photinus_geometry::{Hit, Ray};
 use photinus_profile::queries::QueryTotals;
-use photinus_render::{Compiled, Mode, Observer, Phase, RenderError, Renderer, World};
+use photinus_render::{Compiled, Mode, Observer, Phase, RenderError, Renderer, Settings, World};
 use photinus_scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::Arc;
@@ -91,7 +91,7 @@ impl Session {
     pub fn new(mut scene: Scene, options: RenderOptions) -> Result<Self> {
         options.check()?;
         options.apply(&mut scene)?;
-        let notes = options.tessellate_spheres(&mut scene)?.into_iter().collect();
+        let notes = options.tessellate_spheres(&mut scene)?.into_iter().chain(options.uncorrected_edges()).collect();
         let triangles = scene.triangle_count() as u64;
         let pool = ThreadPoolBuilder::new()
             .num_threads(options.threads.unwrap_or(0))
@@ -256,7 +256,7 @@ impl Session {
     fn picture(&self, renderer: &Renderer<'_>) -> Picture {
         let [_, _, width, height] = renderer.window();
         let settings = &self.options.settings;
-        let about = [
+        let mut about = vec![
             ("scene", self.world.name.clone()),
             ("mode", settings.mode.name().to_owned()),
             ("passes", renderer.passes().to_string()),
@@ -265,6 +265,10 @@ impl Session {
             ("seed", settings.seed.to_string()),
             ("software", concat!("photinus ", env!("CARGO_PKG_VERSION")).to_owned()),
         ];
+        if settings.mode != Mode::Path {
+            about.push(("support", settings.support.clone()));
+            about.push(("kernel", settings.kernel_name().to_owned()));
+        }
         Picture::new(&renderer.pixels(), renderer.layout(), width, height, &about)
     }
 
@@ -313,7 +317,10 @@ impl Session {
             memory: MemoryStats::of(plan.map(|plan| &plan.memory)),
             threads: self.threads(),
             seed: settings.seed,
-            settings: settings.clone(),
+            settings: Settings {
+                kernel: (settings.mode != Mode::Path).then(|| settings.kernel_name().to_owned()),
+                ..settings.clone()
+            },
             version: env!("CARGO_PKG_VERSION"),
             machine: Machine::this(),
         };
