@@ -1,6 +1,6 @@
 //! Times building and searching of every member on one thread: processor time, medians with spread.
 //!
-//! `cargo run --release -p photinus-photons --example photon_bench [-- [MEMBER...] [photons=N] [only=WORD]]`
+//! `cargo run --release -p photinus-photons --example photon_bench [-- [MEMBER...] [photons=N] [support=NAME] [only=WORD]]`
 
 #![allow(clippy::print_stdout)]
 
@@ -9,7 +9,10 @@ mod support;
 
 use photinus_geometry::Vec3;
 use photinus_num::Sampler;
-use photinus_photons::{BuildOptions, GatherQuery, Gathered, Kernel, Photon, SEARCHES, Search, SearchMember};
+use photinus_photons::{
+    BuildOptions, DEFAULT_SUPPORT, GatherQuery, Gathered, Kernel, Photon, SEARCHES, Search, SearchMember, Support,
+    find_support,
+};
 use photinus_profile::SearchCounters;
 use std::time::Instant;
 
@@ -31,14 +34,17 @@ struct Wanted {
     members: Vec<String>,
     photons: Vec<usize>,
     only: String,
+    support: &'static Support,
 }
 
 impl Wanted {
     fn from_arguments() -> Self {
-        let mut wanted = Self { members: Vec::new(), photons: Vec::new(), only: String::new() };
+        let support = find_support(DEFAULT_SUPPORT).expect("it is on the list");
+        let mut wanted = Self { members: Vec::new(), photons: Vec::new(), only: String::new(), support };
         for argument in std::env::args().skip(1) {
             match argument.split_once('=') {
                 Some(("photons", n)) => wanted.photons.push(n.parse().expect("photons=N")),
+                Some(("support", name)) => wanted.support = find_support(name).expect("support=NAME"),
                 Some(("only", word)) => word.clone_into(&mut wanted.only),
                 _ => wanted.members.push(argument),
             }
@@ -123,7 +129,7 @@ fn queries(count: usize, radius: f32, in_order: bool) -> Vec<GatherQuery> {
 
 fn bench(wanted: &Wanted, member: &SearchMember, photons: &[Photon], radius: f32, count: usize) {
     let options = BuildOptions { radius_hint: radius };
-    println!("{} over {} photons, radius {radius:.4}", member.name, photons.len());
+    println!("{} over {} photons, {} of radius {radius:.4}", member.name, photons.len(), wanted.support.name);
     // Many builds a timing, so that each is long against the clock's step.
     let builds = (1 << 20) / photons.len();
     let mut copies: Vec<Vec<Photon>> = Vec::new();
@@ -137,7 +143,7 @@ fn bench(wanted: &Wanted, member: &SearchMember, photons: &[Photon], radius: f32
         copies.extend((0..builds).map(|_| photons.to_vec()));
         copies.clear();
     });
-    let search = member.build(photons.to_vec(), &options).expect("built");
+    let search = wanted.support.over(member.build(photons.to_vec(), &options).expect("built"));
     println!("  {:34} {:9.1} bytes a photon", "memory", search.summary().bytes as f64 / photons.len() as f64);
     if ["build", "copy"].contains(&wanted.only.as_str()) {
         return;
