@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{SMALL, refused, run, run_in, stderr, stdout, success};
+use common::{SMALL, json, refused, run, run_in, stderr, stdout, success};
 use std::process::Stdio;
 
 #[test]
@@ -22,6 +22,9 @@ fn wrong_usage_is_exit_code_two() {
         &["render", "--unheard-of"],
         &["render", "-o", "picture.jpg"],
         &["render", "--mode", "progresive"],
+        &["render", "--support", "cube"],
+        &["render", "--kernel", "tent"],
+        &["render", "--caustic-radius", "0"],
         &["compare", "a.exr"],
         &["tree", "cornell", "--node-cost", "nan"],
     ];
@@ -39,6 +42,8 @@ fn a_misspelt_member_gets_a_suggestion() {
         ("--accel", "wide-bhv", "wide-bvh"),
         ("--intersect", "baduel", "badouel"),
         ("--search", "kd-balancd", "kd-balanced"),
+        ("--support", "box-poligon", "box-polygon"),
+        ("--kernel", "gausian", "gaussian"),
         ("--tonemap", "film", "filmic"),
     ] {
         let said = stderr(&run(&["render", option, typed]));
@@ -52,6 +57,46 @@ fn underscores_are_accepted_in_names() {
     let arguments = [&["render", "two_spheres", "--accel", "brute_force", "--search", "kd_balanced"], SMALL].concat();
     success(&run_in(folder.path(), &arguments));
     assert!(folder.path().join("two-spheres.png").exists());
+}
+
+#[test]
+fn estimates_that_do_not_go_together_are_refused_or_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |more: &[&str]| run_in(folder.path(), &[&["render"], SMALL, more].concat());
+    let said = refused(&with(&["--mode", "path", "--support", "disc"]), 1);
+    assert!(said.starts_with("photinus: --support: "), "{said}");
+    let said = refused(&with(&["--support", "disc", "--record-queries", "q.bin"]), 1);
+    assert!(said.starts_with("photinus: --support: "), "{said}");
+    // Edges are corrected for balls only; direct mode corrects none.
+    for (mode, support, is_said) in
+        [("gather", "disc", true), ("gather", "box_trimmed", false), ("direct", "disc", false)]
+    {
+        let small = &SMALL[..SMALL.len() - 1];
+        assert_eq!(SMALL.last(), Some(&"--quiet"));
+        let arguments = [&["render", "--mode", mode, "--support", support], small].concat();
+        let output = run_in(folder.path(), &arguments);
+        success(&output);
+        assert_eq!(stderr(&output).contains("dark at edges"), is_said, "{mode} {support}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn what_estimates_were_made_over_is_written_down() {
+    let folder = tempfile::tempdir().unwrap();
+    for (more, support, kernel) in [
+        (&["--mode", "direct", "--support", "ellipsoid", "--kernel", "cone"][..], "ellipsoid", "cone"),
+        (&[], "ball", "epanechnikov"),
+    ] {
+        let found = json(&run_in(folder.path(), &[&["render", "-o", "a.exr", "--json"], SMALL, more].concat()));
+        assert_eq!((&found["settings"]["support"], &found["settings"]["kernel"]), (&support.into(), &kernel.into()));
+        let bytes = std::fs::read(folder.path().join("a.exr")).unwrap();
+        for (name, value) in [("support", support), ("kernel", kernel)] {
+            // An attribute is its name, its type, its length and its value.
+            let attribute = [name.as_bytes(), b"\0string\0", &(value.len() as u32).to_le_bytes(), value.as_bytes()];
+            let attribute = attribute.concat();
+            assert!(bytes.windows(attribute.len()).any(|w| w == attribute), "{name} {value}");
+        }
+    }
 }
 
 #[test]

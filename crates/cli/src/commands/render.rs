@@ -42,8 +42,8 @@ pub fn run(args: &RenderArgs, begun: Instant) -> Result {
         report::bytes(structure.bytes),
         session.build_secs()
     ));
-    for note in session.notes() {
-        report::warning(note);
+    if !args.quiet {
+        session.notes().iter().for_each(|note| report::warning(note));
     }
 
     let monitor = Monitor { progress, interrupts, target, saved: Mutex::new(Instant::now()) };
