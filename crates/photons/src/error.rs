@@ -27,6 +27,9 @@ pub enum PhotonError {
     /// No kernel has this name.
     #[error("no kernel is called '{0}'; there are: {names}", names = names(KERNELS.iter().map(|k| k.name)))]
     UnknownKernel(String),
+    /// A record of irradiance has a number that is not finite, or a radius that is not above 0.
+    #[error("the irradiance record at {0} has numbers that are not finite, or no radius")]
+    Record(Vec3),
     /// More photons than a search can number.
     #[error("{0} photons are more than a search holds (2^30); store fewer a pass")]
     TooManyPhotons(usize),

@@ -12,6 +12,7 @@ mod error;
 mod flux;
 mod inclusion;
 mod index;
+pub mod irradiance;
 mod kernel;
 mod list;
 mod nearest;
