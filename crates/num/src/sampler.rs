@@ -26,6 +26,10 @@ pub enum StreamKind {
     Sky = 8,
     /// Points of an estimate's disc that are looked at: streams and indices as of camera samples.
     Support = 9,
+    /// Rays of final gathering: the stream is the pixel and the edges of its path, the index the ray (over all passes).
+    FinalGather = 10,
+    /// Points that records of irradiance are made for, and their rays: the stream is the pixel or the record, the index the ray.
+    IrradianceCache = 11,
 }
 
 /// Dimensions beyond this many draw plain random numbers: long paths gain nothing from stratification.

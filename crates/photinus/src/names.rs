@@ -4,7 +4,7 @@ use crate::{Error, Result};
 use photinus_accel::{Clip, GridCells, SplitCandidates};
 use photinus_image::tonemap::{TONEMAPS, Tonemap};
 use photinus_render::bsdf::SurfaceModel;
-use photinus_render::{Aov, Mode};
+use photinus_render::{Aov, INDIRECT as INDIRECT_MEMBERS, Indirect, Mode};
 
 /// A member of a family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,6 +102,13 @@ const MODES: [(Member, Mode); 4] = [
     (Member { name: "path", summary: "a path tracer: ground truth" }, Mode::Path),
 ];
 
+/// Ways to estimate light after a diffuse bounce.
+pub const INDIRECT: Family = Family {
+    what: "way to estimate indirect light",
+    default: INDIRECT_MEMBERS[0].name,
+    list: || INDIRECT_MEMBERS.iter().map(|member| Member { name: member.name, summary: member.about }).collect(),
+};
+
 /// Layers of an EXR file.
 pub const AOV: Family = Family {
     what: "layer",
@@ -193,6 +200,15 @@ pub const BACKEND: Family = Family {
 /// [`Error::UnknownName`], as for all that follow.
 pub fn mode(name: &str) -> Result<Mode> {
     MODE.choose(name, &MODES.map(|(member, mode)| (member.name, mode)))
+}
+
+/// The way to estimate indirect light called `name`.
+///
+/// # Errors
+/// [`Error::UnknownName`].
+pub fn indirect(name: &str) -> Result<Indirect> {
+    let choices: Vec<(&str, Indirect)> = INDIRECT_MEMBERS.iter().map(|member| (member.name, member.choice)).collect();
+    INDIRECT.choose(name, &choices)
 }
 
 /// The layer called `name`.
@@ -300,8 +316,21 @@ fn nearest<'a>(wanted: &str, names: &[&'a str]) -> Option<&'a str> {
 mod tests {
     use super::*;
 
-    const ALL: &[Family] =
-        &[SCENES, ACCEL, INTERSECT, SEARCH, SUPPORT, KERNEL, MODE, AOV, TONEMAP, SURFACE_MODEL, CANDIDATES, BACKEND];
+    const ALL: &[Family] = &[
+        SCENES,
+        ACCEL,
+        INTERSECT,
+        SEARCH,
+        SUPPORT,
+        KERNEL,
+        MODE,
+        INDIRECT,
+        AOV,
+        TONEMAP,
+        SURFACE_MODEL,
+        CANDIDATES,
+        BACKEND,
+    ];
 
     #[test]
     fn every_family_has_its_default_and_no_name_twice() {
@@ -329,6 +358,7 @@ mod tests {
             }
         };
         all(MODE, &|name| mode(name).is_ok_and(|mode| mode.name() == name));
+        all(INDIRECT, &|name| indirect(name).is_ok());
         all(AOV, &|name| aov(name).is_ok_and(|aov| aov.name() == name));
         all(TONEMAP, &|name| tonemap(name).is_ok_and(|curve| curve.name == name));
         all(SURFACE_MODEL, &|name| surface_model(name).is_ok());

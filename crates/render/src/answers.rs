@@ -3,7 +3,7 @@
 use crate::companions::Spread;
 use crate::counters::Counters;
 use crate::eye_pass::EyePass;
-use crate::film::Aov;
+use crate::indirect::Batch;
 use crate::maps::{Estimate, EstimateScratch, Estimated, Estimates};
 use crate::support::{Look, Looker, points_for};
 use crate::tile::{Part, Tile};
@@ -13,7 +13,7 @@ use photinus_photons::Kernel;
 
 impl EyePass<'_> {
     /// How much of the discs of estimates is surface.
-    fn shares(
+    pub(crate) fn shares(
         &self,
         kernel: Kernel,
         list: &[Estimate],
@@ -25,7 +25,7 @@ impl EyePass<'_> {
         let Some(pixels) = self.cut_pixels else { return vec![1.0; list.len()] };
         let sample = [tile.sample, self.pass * self.spp + tile.sample];
         let origin = [self.crop[0], self.crop[1]];
-        let looker = Looker { world: self.world, kernel, pixels, seed: self.seed, origin, sample };
+        let looker = Looker { world: self.world, kernel, seed: self.seed, origin, sample };
         let pixel = |path: u32| tile.window_pixel(path);
         let look = |(e, found): (&Estimate, &Estimated)| {
             let mine = found.radiance.element_sum();
@@ -33,7 +33,7 @@ impl EyePass<'_> {
             Look { radius: found.radius, density: found.density, count: points_for(mine / (mine + others)) }
         };
         let looks: Vec<Look> = list.iter().zip(found).map(look).collect();
-        looker.shares(list, &looks, pixel, tracer, counters)
+        looker.shares(pixels, list, &looks, pixel, tracer, counters)
     }
 
     /// Answers the estimates of a batch from the maps.
@@ -49,12 +49,8 @@ impl EyePass<'_> {
         let mut scratch = EstimateScratch::for_batch_of(tracer);
         let mut out: Vec<Estimated> = Vec::new();
         let (list, companions) = (&estimates.list, &estimates.companions);
-        maps.global.estimate(list, estimates, maps.knn, twin, &mut scratch, &mut out, counters);
-        let shares = self.shares(maps.global.kernel, list, &out, tile, tracer, counters);
-        for ((e, found), share) in list.iter().zip(&out).zip(shares) {
-            tile.add(e.path, Part::Indirect, found.radiance / share);
-            tile.add_scalar(e.path, Aov::PhotonDensity, found.density / share);
-        }
+        let batch = Batch { maps, estimates, twin, scratch: &mut scratch, out: &mut out, tile, tracer, counters };
+        self.indirect.answer(self, batch);
         if let Some(caustic) = &maps.caustic {
             let mut spreads = vec![Spread::NONE; if companions.is_empty() { 0 } else { tile.weights.len() }];
             for list in [list, companions] {

@@ -12,13 +12,18 @@ pub enum Phase {
     PhotonPass,
     /// The photon map is built.
     MapBuild,
+    /// Irradiance is computed at photons.
+    Irradiance,
+    /// A cache of irradiance is filled.
+    IrradianceCache,
     /// Rays from the camera, and estimates where they land.
     EyePass,
 }
 
 impl Phase {
     /// Every one, in order.
-    pub const ALL: [Self; 4] = [Self::Pilot, Self::PhotonPass, Self::MapBuild, Self::EyePass];
+    pub const ALL: [Self; 6] =
+        [Self::Pilot, Self::PhotonPass, Self::MapBuild, Self::Irradiance, Self::IrradianceCache, Self::EyePass];
 
     /// Its name for people.
     pub fn name(self) -> &'static str {
@@ -26,6 +31,8 @@ impl Phase {
             Self::Pilot => "pilot",
             Self::PhotonPass => "photon pass",
             Self::MapBuild => "map build",
+            Self::Irradiance => "irradiance at photons",
+            Self::IrradianceCache => "irradiance cache",
             Self::EyePass => "eye pass",
         }
     }

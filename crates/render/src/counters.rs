@@ -26,6 +26,8 @@ pub struct RayCounts {
     pub gather: u64,
     /// Rays that look how much of an estimate's disc is surface.
     pub support: u64,
+    /// Rays of final gathering, and on from mirrors and glass that they meet.
+    pub final_gather: u64,
     /// Any of these once more, from behind a hole that let it through.
     pub beyond: u64,
 }
@@ -33,7 +35,48 @@ pub struct RayCounts {
 impl RayCounts {
     /// All rays traced.
     pub fn total(&self) -> u64 {
-        self.photon + self.camera + self.specular + self.shadow + self.gather + self.support + self.beyond
+        self.photon
+            + self.camera
+            + self.specular
+            + self.shadow
+            + self.gather
+            + self.support
+            + self.final_gather
+            + self.beyond
+    }
+}
+
+/// Irradiance that is computed once and looked up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct IrradianceCounts {
+    /// Photons at which it was computed.
+    pub precomputed: u64,
+    /// Photons that those estimates found.
+    pub photons_found: u64,
+    /// Look-ups of the nearest such photon.
+    pub look_ups: u64,
+    /// Of those, without a photon near enough that faces alike.
+    pub missed: u64,
+    /// Records of the irradiance cache.
+    pub records: u64,
+    /// Visible points whose irradiance was interpolated between records.
+    pub interpolated: u64,
+    /// Visible points that gathered for themselves.
+    pub gathered: u64,
+}
+
+impl IrradianceCounts {
+    /// Counts a look-up.
+    #[inline]
+    pub(crate) fn count_look_up(&mut self, is_found: bool) {
+        self.look_ups += 1;
+        self.missed += u64::from(!is_found);
+    }
+}
+
+impl AddAssign for IrradianceCounts {
+    fn add_assign(&mut self, other: Self) {
+        add!(self, other; precomputed, photons_found, look_ups, missed, records, interpolated, gathered);
     }
 }
 
@@ -114,6 +157,8 @@ pub struct Counters {
     pub searches: u64,
     /// Photons that they found.
     pub photons_found: u64,
+    /// Irradiance that was computed, looked up and interpolated.
+    pub irradiance: IrradianceCounts,
     /// Work of the rays that ran the instrumented twin.
     pub sampled_rays: RayCounters,
     /// Work of the searches that did.
@@ -139,8 +184,8 @@ impl AddAssign for PhotonCounts {
 
 impl AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
-        add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather, support, beyond);
-        add!(self, other; photons, caustic_photons, searches, photons_found);
+        add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather, support, final_gather, beyond);
+        add!(self, other; photons, caustic_photons, searches, photons_found, irradiance);
         add!(self, other; sampled_rays, sampled_searches, sampled_estimates, spent);
     }
 }

@@ -9,6 +9,7 @@ use crate::counters::{Counters, timed};
 use crate::cut_pixels::CutPixels;
 use crate::film::{Aov, FilmLayout};
 use crate::film_filter::{FilterSampler, SharedFilter};
+use crate::indirect::{IndirectEstimate, Kept};
 use crate::light::{Lights, Place};
 use crate::maps::{Estimate, Estimates, Maps};
 use crate::recording::NOT_YET;
@@ -48,6 +49,8 @@ pub(crate) struct EyePass<'a> {
     pub max_depth: u32,
     /// None: light after the first diffuse surface is path traced.
     pub maps: Option<&'a Maps>,
+    /// What estimates light after a diffuse bounce from the maps.
+    pub indirect: &'a dyn IndirectEstimate,
     /// A ray from each diffuse surface looks for lights too, weighted against the shadow ray.
     pub probe: bool,
     /// One query in this many is counted, see [`Twin`].
@@ -395,6 +398,16 @@ impl EyePass<'_> {
             estimate.scale = pixels.scale([x0 + path.pixel % w, y0 + path.pixel / w], &estimate, maps.global.radius);
         }
         estimates.list.push(estimate);
+        if self.indirect.keeps_surfaces() {
+            let [x, y] = self.film_pixel(tile.place, path.pixel);
+            estimates.kept.push(Kept {
+                point: *point,
+                bsdf: bsdf.clone(),
+                stream: u64::from(path.depth.min(255)) << 56 | u64::from(y) << 32 | u64::from(x),
+                depth: path.depth,
+                width: path.width,
+            });
+        }
         if !self.probe {
             return;
         }

@@ -18,6 +18,7 @@ mod facet;
 mod film;
 mod film_filter;
 mod footprint;
+mod indirect;
 mod light;
 mod maps;
 mod memory;
@@ -44,8 +45,9 @@ mod world;
 
 pub use camera::{CameraModel, CameraRay};
 pub use control::{Cancelled, Observer, Phase, Silent};
-pub use counters::{Counters, PhotonCounts, PhotonPower, RayCounts, Spent};
+pub use counters::{Counters, IrradianceCounts, PhotonCounts, PhotonPower, RayCounts, Spent};
 pub use film::{Aov, Film, FilmLayout};
+pub use indirect::{INDIRECT, Indirect, IndirectMember};
 pub use light::{LightSample, Lights, PhotonStart, VisibleRegion};
 pub use memory::RenderMemory;
 pub use renderer::{RenderError, Renderer};

@@ -2,6 +2,7 @@
 
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::counters::{Counters, timed};
+use crate::indirect::Kept;
 use crate::recording::{search_record, sum};
 use crate::trace::Tracer;
 use crate::twin::Twin;
@@ -72,6 +73,8 @@ pub(crate) struct Estimates {
     pub list: Vec<Estimate>,
     /// More places of the same pixel and surface that the caustic map is asked about, see [`crate::companions`].
     pub companions: Vec<Estimate>,
+    /// What rays from each estimate of the list need to know, where there are such rays.
+    pub kept: Vec<Kept>,
     /// Scattering functions that depend on directions; few surfaces need theirs kept.
     bsdfs: Vec<Bsdf>,
 }
@@ -92,6 +95,7 @@ impl Estimates {
     pub fn clear(&mut self) {
         self.list.clear();
         self.companions.clear();
+        self.kept.clear();
         self.bsdfs.clear();
     }
 }

@@ -54,6 +54,8 @@ pub(crate) struct PhotonPass<'g> {
     /// Most edges of a photon's path.
     pub max_depth: u32,
     pub keep: Keep,
+    /// Photons straight from lights are stored, too, in a list of their own.
+    pub keeps_direct: bool,
     /// Where photons are worth starting; none: as the lights shine.
     pub guide: Option<&'g EmissionGuide>,
     /// The caustic map is filled by this pass and another one.
@@ -88,6 +90,8 @@ impl Together<'_> {
 pub(crate) struct StoredPhotons {
     pub global: Vec<Photon>,
     pub caustic: Vec<Photon>,
+    /// Straight from lights, where those are kept.
+    pub direct: Vec<Photon>,
     /// Which photon of the pass each one is, global and caustic; kept by the pilot only.
     pub origins: Vec<u32>,
     pub caustic_origins: Vec<u32>,
@@ -157,6 +161,7 @@ impl PhotonPass<'_> {
             for (photons, c) in results {
                 all.global.extend_from_slice(&photons.global);
                 all.caustic.extend_from_slice(&photons.caustic);
+                all.direct.extend_from_slice(&photons.direct);
                 all.origins.extend_from_slice(&photons.origins);
                 all.caustic_origins.extend_from_slice(&photons.caustic_origins);
                 counters += c;
@@ -361,7 +366,7 @@ impl PhotonPass<'_> {
         let caustic = walk.specular_only && walk.depth > 1;
         let wanted = match self.keep {
             Keep::All | Keep::AllApart => true,
-            Keep::Indirect => walk.depth > 1,
+            Keep::Indirect => walk.depth > 1 || self.keeps_direct,
             Keep::Caustic => caustic,
         };
         if !wanted {
@@ -388,6 +393,10 @@ impl PhotonPass<'_> {
         let Ok(photon) = Photon::new(point.position, flux, wo, normal, walk.depth, caustic) else {
             return;
         };
+        if walk.depth == 1 && self.keeps_direct {
+            stored.direct.push(photon);
+            return;
+        }
         add(&mut counters.photons.power.stored, arriving);
         counters.photons.stored += 1;
         if caustic && self.keep != Keep::All {
@@ -473,6 +482,7 @@ mod tests {
             kind: StreamKind::Photon,
             pass: 0,
             count: 10_000,
+            keeps_direct: false,
             max_depth: 127,
             keep,
             guide: None,

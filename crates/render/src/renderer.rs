@@ -9,6 +9,7 @@ use crate::direct::DEFAULT_LEVELS;
 use crate::eye_pass::{EyePass, TILE};
 use crate::film::{Aov, Film, FilmLayout};
 use crate::film_filter::{FilterSampler, SharedFilter};
+use crate::indirect::{IndirectEstimate, Photons, Preparing};
 use crate::light::{LightGuide, Lights, SkyView, anchors, shadow_rays};
 use crate::maps::{Map, Maps};
 use crate::memory::{Ahead, RenderMemory};
@@ -77,6 +78,8 @@ pub struct Renderer<'w> {
     cut_pixels: Option<CutPixels>,
     /// Maps that all passes share, in the modes with one photon map.
     shared_maps: Option<Maps>,
+    /// What estimates light after a diffuse bounce, of the same modes.
+    shared_indirect: Box<dyn IndirectEstimate>,
     film: Film,
     /// What a first pass had done when it was stopped.
     partial: Option<Vec<f32>>,
@@ -146,6 +149,7 @@ impl<'w> Renderer<'w> {
             window: None,
             stored: [0; 2],
             shared_maps: None,
+            shared_indirect: Box::new(Photons),
             film: Film::new(0),
             partial: None,
             counters: Counters::default(),
@@ -259,6 +263,7 @@ impl<'w> Renderer<'w> {
                 (Mode::Direct, Some(_)) => Keep::AllApart,
                 _ => Keep::Indirect,
             },
+            keeps_direct: false,
             guide: None,
             together: self.caustics.as_ref().map(|plan| Together {
                 guide: &plan.guide,
@@ -304,6 +309,7 @@ impl<'w> Renderer<'w> {
             spp: self.settings.spp.max(1),
             max_depth: self.max_depth,
             maps,
+            indirect: &*self.shared_indirect,
             probe: self.probe,
             profile_every: self.settings.profile_every,
             shadow_rays: self.shadow_rays,
@@ -349,14 +355,17 @@ impl<'w> Renderer<'w> {
 
     fn build_maps(&mut self, pass: u32, radii: Radii, observer: &dyn Observer) -> Result<Maps, RenderError> {
         observer.begin(Phase::PhotonPass, pass);
-        let photon_pass = self.photon_pass(pass);
-        let (StoredPhotons { global, mut caustic, .. }, mut counters) =
+        let indirect = self.settings.indirect;
+        let keeps_direct = self.settings.mode == Mode::Gather && indirect.wants_all_light();
+        let photon_pass = PhotonPass { keeps_direct, ..self.photon_pass(pass) };
+        let (StoredPhotons { global, mut caustic, direct: mut all, .. }, mut counters) =
             photon_pass.run(self.world, &self.lights, observer)?;
         if let Some(plan) = &self.caustics {
             let own = PhotonPass {
                 kind: StreamKind::CausticPhoton,
                 count: plan.count,
                 keep: Keep::Caustic,
+                keeps_direct: false,
                 guide: Some(&plan.guide),
                 window: None,
                 ..photon_pass
@@ -384,11 +393,31 @@ impl<'w> Renderer<'w> {
             };
             Ok(Map { kind, search, radius, kernel, support })
         };
-        Ok(Maps {
+        if keeps_direct {
+            all.extend_from_slice(&global);
+            all.extend_from_slice(&caustic);
+        }
+        let maps = Maps {
             global: map(MapKind::Global, global, radii.global)?,
             caustic: if caustic.is_empty() { None } else { Some(map(MapKind::Caustic, caustic, radii.caustic)?) },
             knn: self.settings.knn,
-        })
+        };
+        if self.settings.mode == Mode::Gather {
+            let mut preparing = Preparing {
+                world: self.world,
+                camera: &self.camera,
+                crop: self.crop,
+                settings: &self.settings,
+                max_depth: self.max_depth,
+                maps: &maps,
+                all,
+                observer,
+            };
+            let mut counters = Counters::default();
+            self.shared_indirect = indirect.prepare(&mut preparing, &mut counters)?;
+            self.counters += counters;
+        }
+        Ok(maps)
     }
 
     /// The picture so far: channels of each pixel of the window, row by row, by [`Renderer::layout`].

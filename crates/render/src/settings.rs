@@ -1,6 +1,7 @@
 //! What a render is to do.
 
 use crate::film::Aov;
+use crate::indirect::Indirect;
 use photinus_photons::{DEFAULT_SUPPORT, find_support};
 use serde::Serialize;
 
@@ -63,6 +64,14 @@ pub struct Settings {
     pub max_depth: Option<u32>,
     /// Seed of all random numbers.
     pub seed: u64,
+    /// How light after a diffuse bounce is estimated at visible points; in gather mode only.
+    pub indirect: Indirect,
+    /// Rays of final gathering from each visible point, 1 to 65,536; four times as many from records of the cache.
+    pub gather_rays: u32,
+    /// Irradiance is computed at one photon in so many, at least 1.
+    pub irradiance_every: u32,
+    /// Ward's a of the irradiance cache, above 0, 1 at most: records are used where the error is estimated below it.
+    pub cache_accuracy: f32,
     /// Photon search, by its name.
     pub search: String,
     /// Pictures beside the beauty.
@@ -104,6 +113,10 @@ impl Default for Settings {
             spp: 1,
             max_depth: None,
             seed: 0,
+            indirect: Indirect::Photons,
+            gather_rays: 64,
+            irradiance_every: 4,
+            cache_accuracy: 0.2,
             search: "grid".to_owned(),
             aovs: Vec::new(),
             track_error: false,

@@ -53,6 +53,8 @@ const MOST_SHARE: f32 = 1.0;
 const MOST_LAYERS: usize = 6;
 /// Step from one to the next, in heights.
 const STEP: f32 = 0.01;
+/// The row of pixels that estimates at photons have the random numbers of: beyond all pictures.
+const ROW_OF_PHOTONS: u32 = 1 << 19;
 /// Differences from a plane that are none.
 const ROUNDING: f32 = 1e-3;
 /// Least cosine between normals of photons and query, as searches have it.
@@ -100,7 +102,6 @@ impl Point {
 pub(crate) struct Looker<'a> {
     pub world: &'a World,
     pub kernel: Kernel,
-    pub pixels: &'a CutPixels,
     pub seed: u64,
     /// The window's first pixel of the film.
     pub origin: [u32; 2],
@@ -108,11 +109,17 @@ pub(crate) struct Looker<'a> {
     pub sample: [u32; 2],
 }
 
-impl Looker<'_> {
+impl<'a> Looker<'a> {
+    /// Looks at the discs of estimates at photons, number `first` and those that follow.
+    pub fn of_photons(world: &'a World, kernel: Kernel, seed: u64, first: u32) -> Self {
+        Self { world, kernel, seed, origin: [first, ROW_OF_PHOTONS], sample: [0; 2] }
+    }
+
     /// The share of each estimate's disc that is surface, `LEAST_SHARE` to `MOST_SHARE`, one `look` each. `pixel` gives the place of
     /// a path in the window.
     pub fn shares(
         &self,
+        pixels: &CutPixels,
         estimates: &[Estimate],
         looks: &[Look],
         pixel: impl Fn(u32) -> [u32; 2],
@@ -120,21 +127,49 @@ impl Looker<'_> {
         counters: &mut Counters,
     ) -> Vec<f32> {
         let mut shares = vec![1.0; estimates.len()];
-        if self.pixels.is_known() {
-            self.look(estimates, looks, &pixel, |place| self.pixels.were_cut(place), &mut shares, tracer, counters);
+        if pixels.is_known() {
+            self.look(pixels, estimates, looks, &pixel, |place| pixels.were_cut(place), &mut shares, tracer, counters);
         } else {
             // One pixel of a square first, then the others of those squares where a disc is cut.
             let is_first = |place: [u32; 2]| place.iter().all(|c| c % COARSE == 0);
-            self.look(estimates, looks, &pixel, is_first, &mut shares, tracer, counters);
-            let is_next = |place| !is_first(place) && self.pixels.are_cut(place);
-            self.look(estimates, looks, &pixel, is_next, &mut shares, tracer, counters);
+            self.look(pixels, estimates, looks, &pixel, is_first, &mut shares, tracer, counters);
+            let is_next = |place| !is_first(place) && pixels.are_cut(place);
+            self.look(pixels, estimates, looks, &pixel, is_next, &mut shares, tracer, counters);
         }
         shares
+    }
+
+    /// The share of each disc that is surface, of estimates at photons, which no pixel and no pass before knows of; one radius
+    /// each.
+    pub fn shares_of_photons(
+        &self,
+        estimates: &[Estimate],
+        radii: &[f32],
+        tracer: &mut Tracer,
+        counters: &mut Counters,
+    ) -> Vec<f32> {
+        let mut lost = vec![0.0; estimates.len()];
+        let mut used = vec![0; estimates.len()];
+        // Where something is missing, more points tell how much.
+        for stage in [1, MORE_POINTS] {
+            let mut points = Vec::new();
+            for (i, e) in estimates.iter().enumerate().filter(|(i, _)| stage == 1 || lost[*i] > 0.0) {
+                let range = used[i]..POINTS_ELSEWHERE * stage;
+                used[i] = range.end;
+                self.add_points(i, e, radii[i], range, [i as u32, 0], &mut points);
+            }
+            for (i, part) in self.lost(estimates, points, tracer, counters) {
+                lost[i] += part;
+            }
+        }
+        let share = |(lost, used): (f32, u32)| (1.0 - lost * part(used as f32)).clamp(LEAST_SHARE, MOST_SHARE);
+        lost.into_iter().zip(used).map(share).collect()
     }
 
     /// Looks at the discs of those pixels that are wanted.
     fn look(
         &self,
+        pixels: &CutPixels,
         estimates: &[Estimate],
         looks: &[Look],
         pixel: impl Fn(u32) -> [u32; 2],
@@ -147,7 +182,7 @@ impl Looker<'_> {
         let mut seen: Vec<Seen> = estimates.iter().zip(looks).map(|_| Seen::default()).collect();
         for &i in &wanted {
             let e = &estimates[i];
-            let before = if e.is_first { self.pixels.seen(pixel(e.path)) } else { Seen::default() };
+            let before = if e.is_first { pixels.seen(pixel(e.path)) } else { Seen::default() };
             seen[i] = before.turned_to(e, looks[i]);
         }
         // Where something is missing, more points tell how much.
@@ -175,7 +210,7 @@ impl Looker<'_> {
                 seen[i].lost += lost;
                 if lost == 1.0 {
                     seen[i].is_cut = true;
-                    self.pixels.saw_cut(pixel(estimates[i].path));
+                    pixels.saw_cut(pixel(estimates[i].path));
                 }
             }
         }
@@ -183,8 +218,8 @@ impl Looker<'_> {
             shares[i] = (1.0 - seen[i].lost * part(seen[i].points)).clamp(LEAST_SHARE, MOST_SHARE);
         }
         let first = wanted.into_iter().filter(|&i| estimates[i].is_first && seen[i].points > 0.0);
-        let new = first.map(|i| (self.pixels.index(pixel(estimates[i].path)) as u32, seen[i]));
-        self.pixels.add_new(new.collect());
+        let new = first.map(|i| (pixels.index(pixel(estimates[i].path)) as u32, seen[i]));
+        pixels.add_new(new.collect());
     }
 
     fn add_points(

@@ -46,6 +46,19 @@ pub struct RenderArgs {
     /// Most photons of one estimate, the nearest [default: no limit]
     #[arg(long, value_name = "K", value_parser = values::count, help_heading = "Light")]
     pub knn: Option<u32>,
+    /// How light after a diffuse bounce is estimated, in the mode gather
+    #[arg(long, value_name = "NAME", default_value = names::INDIRECT.default, value_parser = parser(names::INDIRECT),
+        help_heading = "Light")]
+    pub indirect: String,
+    /// Rays of final gathering from a point; four times as many from records of the irradiance cache
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = values::count, help_heading = "Light")]
+    pub gather_rays: u32,
+    /// Compute irradiance at one photon in N, for all of --indirect but photons
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = values::count, help_heading = "Light")]
+    pub irradiance_every: u32,
+    /// Error up to which a record of the irradiance cache is used, 0 to 1: Ward's a
+    #[arg(long, value_name = "A", default_value_t = 0.2, value_parser = values::positive_f32, help_heading = "Light")]
+    pub cache_accuracy: f32,
     /// Eye samples a pixel and pass
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::count, help_heading = "Light")]
     pub spp: u32,

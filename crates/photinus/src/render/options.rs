@@ -6,7 +6,7 @@ use crate::{Error, Result};
 use photinus_accel::BuildOptions;
 use photinus_geometry::Vec3;
 use photinus_render::bsdf::SurfaceModel;
-use photinus_render::{Mode, Settings};
+use photinus_render::{Indirect, Mode, Settings};
 use photinus_scene::{FovAxis, Projection, Scene, tessellate};
 use std::path::PathBuf;
 
@@ -72,6 +72,8 @@ impl Default for RenderOptions {
     }
 }
 
+/// Most rays of final gathering from a point.
+const MOST_GATHER_RAYS: u32 = 65_536;
 /// Most pixels of a picture's edge, and in all.
 const MAX_EDGE: u32 = 65_536;
 const MAX_PIXELS: u64 = 1 << 28;
@@ -106,6 +108,7 @@ impl RenderOptions {
             return Err(Error::setting("--threads", "it must be at least 1"));
         }
         self.check_estimates()?;
+        self.check_indirect()?;
         self.stop.check()
     }
 
@@ -129,6 +132,30 @@ impl RenderOptions {
                 (false, _) => return Err(Error::setting("--support", what)),
                 (true, false) => return Err(Error::setting("--kernel", what)),
                 (true, true) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks how light after a diffuse bounce is estimated.
+    fn check_indirect(&self) -> Result<()> {
+        let settings = &self.settings;
+        if !(1..=MOST_GATHER_RAYS).contains(&settings.gather_rays) {
+            return Err(Error::setting("--gather-rays", format!("it must be 1 to {MOST_GATHER_RAYS}")));
+        }
+        if settings.irradiance_every == 0 {
+            return Err(Error::setting("--irradiance-every", "it must be at least 1"));
+        }
+        if !(settings.cache_accuracy > 0.0 && settings.cache_accuracy <= 1.0) {
+            return Err(Error::setting("--cache-accuracy", "it must be a number above 0, 1 at most"));
+        }
+        if settings.indirect != Indirect::Photons {
+            if settings.mode != Mode::Gather {
+                return Err(Error::setting("--indirect", "only the mode gather has a choice; add --mode gather"));
+            }
+            if self.record_queries.is_some() {
+                let what = "only searches of --indirect photons are recorded; leave one of them out";
+                return Err(Error::setting("--record-queries", what));
             }
         }
         Ok(())
@@ -212,6 +239,10 @@ mod tests {
         };
         assert!(with(|o| o.settings.radius = Some(f32::NAN)).starts_with("--radius: "));
         assert!(with(|o| o.settings.photons = Some(0)).starts_with("--photons: "));
+        assert!(with(|o| o.settings.gather_rays = 0).starts_with("--gather-rays: "));
+        assert!(with(|o| o.settings.irradiance_every = 0).starts_with("--irradiance-every: "));
+        assert!(with(|o| o.settings.cache_accuracy = f32::NAN).starts_with("--cache-accuracy: "));
+        assert!(with(|o| o.settings.indirect = Indirect::FinalGather).starts_with("--indirect: "));
         assert!(with(|o| o.tessellate = Some(-1.0)).starts_with("--tessellate: "));
         assert!(with(|o| o.settings.caustic_radius = Some(0.0)).starts_with("--caustic-radius: "));
         assert!(with(|o| o.settings.support = "boxfixed".into()).contains("did you mean box-fixed?"));

@@ -7,7 +7,7 @@ use photinus_accel::StructureSummary;
 use photinus_profile::{
     AccelProfile, IntersectProfile, PhotonProfile, Profile, ProfileSeconds, RayProfile, SearchProfile,
 };
-use photinus_render::{Counters, PhotonCounts, PhotonPower, RayCounts, Settings};
+use photinus_render::{Counters, IrradianceCounts, PhotonCounts, PhotonPower, RayCounts, Settings};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,6 +31,10 @@ pub struct PhaseStats {
     pub photon_pass: Seconds,
     /// Photon maps are built.
     pub map_build: Seconds,
+    /// Irradiance is computed at photons.
+    pub irradiance: Seconds,
+    /// A cache of irradiance is filled.
+    pub irradiance_cache: Seconds,
     /// Rays from the camera, and estimates where they land.
     pub eye_pass: Seconds,
 }
@@ -116,6 +120,8 @@ pub struct Stats {
     pub accel: AccelStats,
     /// Photon search.
     pub search: SearchProfile,
+    /// Irradiance that was computed, looked up and interpolated.
+    pub irradiance: IrradianceCounts,
     /// Photons.
     pub photons: PhotonStats,
     /// Photons sent out for caustics alone.

@@ -41,9 +41,11 @@ impl IrradianceCache {
     /// Without records, for points within `bounds`; what lies elsewhere is found, too, but more slowly. `accuracy` is Ward's a,
     /// above 0: a record is used where its weight is above 1/a.
     pub fn new(bounds: Aabb, accuracy: f32) -> Self {
-        let edge = bounds.size().max_element() * 1.001;
-        let is_one = edge > 0.0 && edge.is_finite() && bounds.min.is_finite();
-        let (corner, edge) = if is_one { (bounds.min - Vec3::splat(edge * 0.0004), edge) } else { (Vec3::ZERO, 1.0) };
+        // Room around for the spheres of records on the outermost surfaces.
+        let edge = bounds.size().max_element() * 2.0;
+        let corner = bounds.center() - Vec3::splat(0.5 * edge);
+        let is_one = edge > 0.0 && edge.is_finite() && corner.is_finite();
+        let (corner, edge) = if is_one { (corner, edge) } else { (Vec3::ZERO, 1.0) };
         Self { records: Vec::new(), cells: vec![Cell::EMPTY], corner, edge, accuracy }
     }
 

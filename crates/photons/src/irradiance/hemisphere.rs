@@ -76,7 +76,7 @@ impl Hemisphere {
             frame.s * cos + frame.t * sin
         };
         let (mut rotation, mut translation) = ([Vec3::ZERO; 3], [Vec3::ZERO; 3]);
-        let mut add = |sum: &mut [Vec3; 3], axis: Vec3, value: Vec3| {
+        let add = |sum: &mut [Vec3; 3], axis: Vec3, value: Vec3| {
             sum.iter_mut().zip(value.to_array()).for_each(|(sum, value)| *sum += axis * value);
         };
         for k in 0..n {
