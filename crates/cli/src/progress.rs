@@ -12,9 +12,10 @@ use std::time::{Duration, Instant};
 /// Length of the bar: thousandths of the render.
 const STEPS: f64 = 1000.0;
 /// Phases of a pass, and the share of it that each is taken for until one has been measured.
-const PHASES: [(Phase, f64); 5] = [
+const PHASES: [(Phase, f64); 6] = [
     (Phase::PhotonPass, 0.3),
     (Phase::MapBuild, 0.1),
+    (Phase::ShadowPhotons, 0.0),
     (Phase::Irradiance, 0.0),
     (Phase::IrradianceCache, 0.0),
     (Phase::EyePass, 0.6),
@@ -46,7 +47,7 @@ struct State {
     photons: f64,
     samples: f64,
     /// Seconds of the latest of each of [`PHASES`].
-    seconds: [Option<f64>; 5],
+    seconds: [Option<f64>; 6],
 }
 
 impl Progress {
@@ -71,7 +72,7 @@ impl Progress {
             error: None,
             photons: 0.0,
             samples: 0.0,
-            seconds: [None; 5],
+            seconds: [None; 6],
         };
         Self { display, stop, state: Mutex::new(state), shown: AtomicU64::new(0) }
     }
@@ -179,7 +180,7 @@ impl Progress {
 }
 
 /// Share of a pass that is done where `share` of `phase` is, by what the phases took the last time.
-fn share_of_pass(seconds: &[Option<f64>; 5], phase: Phase, share: f64) -> f64 {
+fn share_of_pass(seconds: &[Option<f64>; 6], phase: Phase, share: f64) -> f64 {
     let measured = seconds[PHASES.len() - 1].is_some();
     let weight = |i: usize| if measured { seconds[i].unwrap_or(0.0) } else { PHASES[i].1 };
     let total: f64 = (0..PHASES.len()).map(weight).sum();
@@ -194,13 +195,13 @@ mod tests {
 
     #[test]
     fn shares_of_a_pass_rise_from_phase_to_phase() {
-        let guess = [None; 5];
+        let guess = [None; 6];
         assert_eq!(share_of_pass(&guess, Phase::PhotonPass, 0.0), 0.0);
         assert!((share_of_pass(&guess, Phase::EyePass, 0.0) - 0.4).abs() < 1e-12);
         assert!((share_of_pass(&guess, Phase::EyePass, 1.0) - 1.0).abs() < 1e-12);
-        let measured = [Some(1.0), Some(1.0), None, None, Some(2.0)];
+        let measured = [Some(1.0), Some(1.0), None, None, None, Some(2.0)];
         assert_eq!(share_of_pass(&measured, Phase::MapBuild, 0.5), 0.375);
-        let eye_only = [None, None, None, None, Some(2.0)];
+        let eye_only = [None, None, None, None, None, Some(2.0)];
         assert_eq!(share_of_pass(&eye_only, Phase::EyePass, 0.5), 0.5);
     }
 }

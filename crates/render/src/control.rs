@@ -14,6 +14,8 @@ pub enum Phase {
     MapBuild,
     /// Irradiance is computed at photons.
     Irradiance,
+    /// Photons go on through what they hit.
+    ShadowPhotons,
     /// A cache of irradiance is filled.
     IrradianceCache,
     /// Rays from the camera, and estimates where they land.
@@ -22,8 +24,15 @@ pub enum Phase {
 
 impl Phase {
     /// Every one, in order.
-    pub const ALL: [Self; 6] =
-        [Self::Pilot, Self::PhotonPass, Self::MapBuild, Self::Irradiance, Self::IrradianceCache, Self::EyePass];
+    pub const ALL: [Self; 7] = [
+        Self::Pilot,
+        Self::PhotonPass,
+        Self::MapBuild,
+        Self::ShadowPhotons,
+        Self::Irradiance,
+        Self::IrradianceCache,
+        Self::EyePass,
+    ];
 
     /// Its name for people.
     pub fn name(self) -> &'static str {
@@ -31,6 +40,7 @@ impl Phase {
             Self::Pilot => "pilot",
             Self::PhotonPass => "photon pass",
             Self::MapBuild => "map build",
+            Self::ShadowPhotons => "shadow photons",
             Self::Irradiance => "irradiance at photons",
             Self::IrradianceCache => "irradiance cache",
             Self::EyePass => "eye pass",

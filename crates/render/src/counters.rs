@@ -65,6 +65,33 @@ pub struct IrradianceCounts {
     pub gathered: u64,
 }
 
+/// Shadow photons and the shadow rays that they save.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ShadowPhotonCounts {
+    /// Stored where photons meet their first surface.
+    pub lit: u64,
+    /// Stored on the surfaces behind.
+    pub shadow: u64,
+    /// Shadow rays that were not sent as the light is seen.
+    pub rays_known_lit: u64,
+    /// Shadow rays that were not sent as it is hidden.
+    pub rays_known_dark: u64,
+}
+
+impl ShadowPhotonCounts {
+    /// Counts a shadow ray that is not sent.
+    pub(crate) fn count_known(&mut self, share: f32) {
+        self.rays_known_lit += u64::from(share > 0.0);
+        self.rays_known_dark += u64::from(share == 0.0);
+    }
+}
+
+impl AddAssign for ShadowPhotonCounts {
+    fn add_assign(&mut self, other: Self) {
+        add!(self, other; lit, shadow, rays_known_lit, rays_known_dark);
+    }
+}
+
 impl IrradianceCounts {
     /// Counts a look-up.
     #[inline]
@@ -159,6 +186,8 @@ pub struct Counters {
     pub photons_found: u64,
     /// Irradiance that was computed, looked up and interpolated.
     pub irradiance: IrradianceCounts,
+    /// Shadow photons and the shadow rays that they save.
+    pub shadow_photons: ShadowPhotonCounts,
     /// Work of the rays that ran the instrumented twin.
     pub sampled_rays: RayCounters,
     /// Work of the searches that did.
@@ -185,7 +214,7 @@ impl AddAssign for PhotonCounts {
 impl AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
         add!(self.rays, other.rays; emitted, photon, camera, specular, shadow, gather, support, final_gather, beyond);
-        add!(self, other; photons, caustic_photons, searches, photons_found, irradiance);
+        add!(self, other; photons, caustic_photons, searches, photons_found, irradiance, shadow_photons);
         add!(self, other; sampled_rays, sampled_searches, sampled_estimates, spent);
     }
 }

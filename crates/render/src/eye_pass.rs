@@ -14,6 +14,7 @@ use crate::light::{Lights, Place};
 use crate::maps::{Estimate, Estimates, Maps};
 use crate::recording::NOT_YET;
 use crate::shadow::{Shadow, power_heuristic};
+use crate::shadow_photons::ShadowPhotons;
 use crate::tile::{Part, Tile, Tiles};
 use crate::trace::Tracer;
 use crate::twin::{Queries, Twin};
@@ -57,6 +58,8 @@ pub(crate) struct EyePass<'a> {
     pub profile_every: u32,
     /// Shadow rays from each surface that is seen, directly or by mirrors; one from those after a diffuse bounce.
     pub shadow_rays: u32,
+    /// Photons that tell where no shadow ray is needed.
+    pub shadow_photons: Option<&'a ShadowPhotons>,
     /// Pixels whose estimates are told how much of their discs is surface; none: all of it.
     pub cut_pixels: Option<&'a CutPixels>,
 }
@@ -272,11 +275,20 @@ impl EyePass<'_> {
                 }
             });
             shadow_rays.clear();
-            shadow_rays.extend(asked.shadows.iter().map(|s| s.ray));
+            let asking = || asked.shadows.iter().filter(|s| s.known.is_none());
+            shadow_rays.extend(asking().map(|s| s.ray));
             counters.rays.shadow += shadow_rays.len() as u64;
-            tracer.ask(asked.shadows.iter().map(|s| (RayKind::Shadow, s.record)));
+            tracer.ask(asking().map(|s| (RayKind::Shadow, s.record)));
             tracer.visibility(shadow_rays, visible, counters);
-            for (shadow, &share) in asked.shadows.iter().zip(&*visible) {
+            let mut visible = visible.iter();
+            for shadow in &asked.shadows {
+                let share = match shadow.known {
+                    None => visible.next().copied().unwrap_or(0.0),
+                    Some(share) => {
+                        counters.shadow_photons.count_known(share);
+                        share
+                    }
+                };
                 if let Some(slot) = shadow.slot {
                     self.lights.saw(slot, share > 0.0);
                 }

@@ -32,6 +32,7 @@ mod renderer;
 mod runs;
 mod settings;
 mod shadow;
+mod shadow_photons;
 mod sort;
 mod support;
 mod surface;
@@ -45,7 +46,7 @@ mod world;
 
 pub use camera::{CameraModel, CameraRay};
 pub use control::{Cancelled, Observer, Phase, Silent};
-pub use counters::{Counters, IrradianceCounts, PhotonCounts, PhotonPower, RayCounts, Spent};
+pub use counters::{Counters, IrradianceCounts, PhotonCounts, PhotonPower, RayCounts, ShadowPhotonCounts, Spent};
 pub use film::{Aov, Film, FilmLayout};
 pub use indirect::{INDIRECT, Indirect, IndirectMember};
 pub use light::{LightSample, Lights, PhotonStart, VisibleRegion};

@@ -51,6 +51,8 @@ pub(crate) struct Ahead {
     pub maps_once: bool,
     /// Bytes of what passes know of their pixels, and of what a pass adds to that.
     pub marks: [u64; 2],
+    /// Photons of further kinds, in maps of their own that are built once those stand, and bytes beside them.
+    pub further: [u64; 2],
     /// Bytes of tables.
     pub lights: u64,
     /// Estimates that are made together.
@@ -58,7 +60,7 @@ pub(crate) struct Ahead {
 }
 
 impl RenderMemory {
-    /// The largest of the three moments that can be the peak.
+    /// The largest of the four moments that can be the peak.
     pub(crate) fn predict(ahead: &Ahead) -> Self {
         let &Ahead { values, passes, tiles, stored: [global, caustic], marks: [marks, new_marks], lights, .. } = ahead;
         let stored = global + caustic;
@@ -78,7 +80,11 @@ impl RenderMemory {
         let kept = if ahead.maps_once { stored * PHOTON_BYTES } else { 0 };
         let writing =
             Self { film: after * buffer + buffer * WRITE_HALVES / 2 + marks, photons: kept, lights, estimates: 0 };
-        [map_build, eye_pass, writing].into_iter().max_by_key(Self::total).unwrap_or_default()
+        let [further, beside] = ahead.further;
+        let build = further * PHOTON_BUILD_BYTES + beside;
+        let further_build =
+            Self { film: at_build * buffer + marks, photons: stored * PHOTON_BYTES + build, lights, estimates: 0 };
+        [map_build, further_build, eye_pass, writing].into_iter().max_by_key(Self::total).unwrap_or_default()
     }
 
     /// All owners together.

@@ -17,6 +17,7 @@ use crate::photon_pass::{Keep, PhotonPass, StoredPhotons, Together};
 use crate::photon_window::PhotonWindow;
 use crate::pilot::{self, PhotonOutlook, Radii};
 use crate::settings::{Mode, Settings};
+use crate::shadow_photons::ShadowPhotons;
 use crate::waves::{ESTIMATES_A_PIXEL, WAVE_ESTIMATES};
 use crate::world::World;
 use photinus_num::StreamKind;
@@ -32,6 +33,9 @@ const ALPHA: f64 = 2.0 / 3.0;
 
 /// Looks at where photons from infinity are useful; those that are aimed already show it better.
 const AIM_ROUNDS: u32 = 2;
+
+/// Bytes of a photon whose irradiance is known: itself, and its place in the tree.
+const KNOWN_BYTES: u64 = 84;
 
 /// Pixels that one task finishes.
 const PIXELS_A_TASK: usize = 1 << 15;
@@ -78,6 +82,8 @@ pub struct Renderer<'w> {
     cut_pixels: Option<CutPixels>,
     /// Maps that all passes share, in the modes with one photon map.
     shared_maps: Option<Maps>,
+    /// Photons that tell where no shadow ray is needed, of the same modes.
+    shadow_photons: Option<ShadowPhotons>,
     /// What estimates light after a diffuse bounce, of the same modes.
     shared_indirect: Box<dyn IndirectEstimate>,
     film: Film,
@@ -149,6 +155,7 @@ impl<'w> Renderer<'w> {
             window: None,
             stored: [0; 2],
             shared_maps: None,
+            shadow_photons: None,
             shared_indirect: Box::new(Photons),
             film: Film::new(0),
             partial: None,
@@ -241,8 +248,21 @@ impl<'w> Renderer<'w> {
                 (Mode::Direct, Some(_)) => WAVE_ESTIMATES.min(pixels * ESTIMATES_A_PIXEL),
                 _ => 0,
             },
+            further: self.further_photons(),
             lights: (self.lights.bytes() + self.caustics.as_ref().map_or(0, |plan| plan.guide.bytes())) as u64,
         })
+    }
+
+    /// Photons of the largest map beside those of estimates, and bytes that stand beside it while it is built.
+    fn further_photons(&self) -> [u64; 2] {
+        // Some tenths of all photons end on the first surface, few go through more than two.
+        let shadow = if self.settings.shadow_photons { 2 * u64::from(self.photons) } else { 0 };
+        if !(self.settings.mode == Mode::Gather && self.settings.indirect.wants_all_light()) {
+            return [shadow, 0];
+        }
+        let all = self.stored.iter().sum::<u64>() + u64::from(self.photons);
+        let known = all / u64::from(self.settings.irradiance_every.max(1)) * KNOWN_BYTES;
+        [all.max(shadow), known]
     }
 
     /// Lights of the scene.
@@ -313,6 +333,7 @@ impl<'w> Renderer<'w> {
             probe: self.probe,
             profile_every: self.settings.profile_every,
             shadow_rays: self.shadow_rays,
+            shadow_photons: self.shadow_photons.as_ref(),
             cut_pixels: self.cut_pixels.as_ref(),
         };
         let result = match (self.settings.mode, maps) {
@@ -415,6 +436,14 @@ impl<'w> Renderer<'w> {
             };
             let mut counters = Counters::default();
             self.shared_indirect = indirect.prepare(&mut preparing, &mut counters)?;
+            if self.settings.shadow_photons {
+                observer.begin(Phase::ShadowPhotons, pass);
+                let photons = &self.photon_pass(pass);
+                let (radius, search) = (radii.global, &self.settings.search);
+                let made =
+                    ShadowPhotons::new(self.world, &self.lights, photons, radius, search, observer, &mut counters)?;
+                self.shadow_photons = Some(made?);
+            }
             self.counters += counters;
         }
         Ok(maps)

@@ -72,6 +72,8 @@ pub struct Settings {
     pub irradiance_every: u32,
     /// Ward's a of the irradiance cache, above 0, 1 at most: records are used where the error is estimated below it.
     pub cache_accuracy: f32,
+    /// Shadow photons tell where shadow rays are not needed; in gather mode only.
+    pub shadow_photons: bool,
     /// Photon search, by its name.
     pub search: String,
     /// Pictures beside the beauty.
@@ -117,6 +119,7 @@ impl Default for Settings {
             gather_rays: 64,
             irradiance_every: 4,
             cache_accuracy: 0.2,
+            shadow_photons: false,
             search: "grid".to_owned(),
             aovs: Vec::new(),
             track_error: false,

@@ -3,6 +3,7 @@
 use crate::SurfacePoint;
 use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::eye_pass::{EyePass, Path, R2, survival};
+use crate::shadow_photons::Verdicts;
 use crate::tile::Part;
 use crate::trace::shadow_ray;
 use photinus_geometry::{Ray, Vec3};
@@ -13,6 +14,8 @@ pub(crate) struct Shadow {
     /// Record of the ray that led here.
     pub record: u32,
     pub pixel: u32,
+    /// The share of the light that is seen, where photons say: no ray is sent.
+    pub known: Option<f32>,
     /// Where it counts for the choice of lights.
     pub slot: Option<u32>,
     pub diffuse: (Vec3, Part),
@@ -27,11 +30,12 @@ impl EyePass<'_> {
         let worth = self.shadow_rays as f32 * path.throughput.max_element().min(1.0);
         let count = if path.diffuse == 0 { (worth.ceil() as u32).max(1) } else { 1 };
         path.last_shadows = count as f32;
+        let verdicts = self.shadow_photons.map(|photons| photons.ask(point.position, bsdf.geometric_normal()));
         for i in 0..count {
             let step = |u: f32, by: f32| (u + i as f32 * by).fract();
             let u = [step(u[0], R2[0]), step(u[1], R2[1])];
             let choice = ((i as f32 + choice) / count as f32).min(0.999_999_94);
-            self.light_once(path, point, bsdf, choice, u, shadows);
+            self.light_once(path, point, bsdf, choice, u, verdicts.as_ref(), shadows);
         }
     }
 
@@ -42,6 +46,7 @@ impl EyePass<'_> {
         bsdf: &Bsdf,
         choice: f32,
         u: [f32; 2],
+        verdicts: Option<&Verdicts>,
         shadows: &mut Vec<Shadow>,
     ) {
         let Some(light) = self.lights.sample(self.world, point.position, path.last_place, choice, u) else { return };
@@ -81,6 +86,7 @@ impl EyePass<'_> {
                 ray: shadow_ray(point, light.dir, light.target),
                 record: path.record,
                 pixel: path.pixel,
+                known: verdicts.and_then(|verdicts| verdicts.visible(light.source)),
                 slot: self.lights.slot(path.last_place, light.item),
                 diffuse,
                 glossy,

@@ -224,7 +224,7 @@ fn steady(work: &mut RayCounters, query: impl FnOnce(&mut RayCounters)) {
 }
 
 /// The rest of a ray after a hit that let it through; parameters stay those of the whole ray.
-fn beyond(ray: &Ray, hit: &Hit, point: &SurfacePoint) -> Ray {
+pub(crate) fn beyond(ray: &Ray, hit: &Hit, point: &SurfacePoint) -> Ray {
     let step = 2.0 * point.offset / ray.dir.length().max(1e-30);
     let after = hit.t + step;
     // Far along a ray the step may vanish in rounding: the next number up always moves on.

@@ -7,7 +7,7 @@ mod common;
 
 use common::*;
 use photinus_geometry::Vec3;
-use photinus_render::{Aov, Mode, Observer, Renderer, Settings, Silent};
+use photinus_render::{Aov, INDIRECT, Indirect, Mode, Observer, Renderer, Settings, Silent};
 use photinus_scene::*;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -151,7 +151,7 @@ fn blocks(pixels: &[Vec3]) -> Vec<Vec3> {
         .collect()
 }
 
-/// Block means of progressive and gather against those of the path tracer. Blocks hold 64 pixels of thousands of
+/// Block means of progressive and gather, by every way to estimate indirect light, against those of the path tracer. Blocks hold 64 pixels of thousands of
 /// samples each: their own noise is well below the tolerance, bias of the radius is not hidden by it.
 #[test]
 fn photons_find_the_light_of_the_path_tracer() {
@@ -164,18 +164,20 @@ fn photons_find_the_light_of_the_path_tracer() {
         let world = world(scene);
         let reference = blocks(&render(&world, Settings { spp: 32, ..settings(Mode::Path) }, 64).0);
         let total: f32 = reference.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
-        for (mode, passes) in [(Mode::Progressive, 64), (Mode::Gather, 16)] {
+        let gather = INDIRECT.iter().map(|member| (Mode::Gather, 16, member.choice));
+        for (mode, passes, indirect) in [(Mode::Progressive, 64, Indirect::Photons)].into_iter().chain(gather) {
             let photons = if mode == Mode::Gather { 1_500_000 } else { 80_000 };
-            let settings = Settings { photons: Some(photons), spp: 4, ..settings(mode) };
+            let settings = Settings { photons: Some(photons), spp: 4, indirect, gather_rays: 16, ..settings(mode) };
             let (pixels, counters) = render(&world, settings, passes);
             let found = blocks(&pixels);
             assert!(name != "window" || counters.photons.split > 0);
             for (i, (a, b)) in found.iter().zip(&reference).enumerate() {
                 let error = (*a - *b).abs().max_element() / (b.max_element() + 0.1 * total);
-                assert!(error < block_limit, "{name}, {mode:?}, block {i}: {a}, path {b}");
+                assert!(error < block_limit, "{name}, {mode:?}, {indirect:?}, block {i}: {a}, path {b}");
             }
             let sum: f32 = found.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
-            assert!((sum / total - 1.0).abs() < mean_limit, "{name}, {mode:?}: mean {sum}, path {total}");
+            println!("{name}, {mode:?}, {indirect:?}: {:.2} % off", 100.0 * (sum / total - 1.0));
+            assert!((sum / total - 1.0).abs() < mean_limit, "{name}, {mode:?}, {indirect:?}: mean {sum}, path {total}");
         }
     }
 }
@@ -197,14 +199,49 @@ fn any_number_of_threads_gives_the_same_bits() {
     outdoor.film.filter = Filter::Tent { radius: 1.0 };
     for scene in [box_scene(0.2), outdoor, window_scene()] {
         let world = world(scene);
-        for mode in Mode::ALL {
-            let settings = Settings { photons: Some(30_000), aovs: Aov::ALL.to_vec(), ..settings(mode) };
+        let gather = INDIRECT.iter().map(|member| (Mode::Gather, member.choice));
+        for (mode, indirect) in Mode::ALL.map(|mode| (mode, Indirect::Photons)).into_iter().chain(gather) {
+            let aovs = Aov::ALL.to_vec();
+            let shadow_photons = indirect == Indirect::FinalGather;
+            let of_members = Settings { indirect, gather_rays: 8, shadow_photons, ..settings(mode) };
+            let settings = Settings { photons: Some(30_000), aovs, ..of_members };
             let one = bits(&world, &settings, 1);
             assert!(one.iter().any(|&b| f32::from_bits(b) > 0.0));
             assert!(one.iter().all(|&b| f32::from_bits(b).is_finite()));
             for threads in [1, 2, 7] {
-                assert!(one == bits(&world, &settings, threads), "{mode:?}: {threads} threads differ");
+                assert!(one == bits(&world, &settings, threads), "{mode:?}, {indirect:?}: {threads} threads differ");
             }
+        }
+    }
+}
+
+/// Most shadow rays are saved under a lamp, some where there is none, and light is the same: what they take for lit or hidden at
+/// the borders of penumbrae is below 1 % of a block.
+#[test]
+fn shadow_photons_save_rays_and_keep_the_light() {
+    for (name, scene, saves) in
+        [("box", box_scene(0.6), true), ("smooth", smooth_scene(), true), ("outdoor", outdoor_scene(), false)]
+    {
+        let world = world(scene);
+        let picture = |shadow_photons: bool| {
+            let settings = Settings { photons: Some(300_000), spp: 4, shadow_photons, ..settings(Mode::Gather) };
+            let (pixels, counters) = render(&world, settings, 8);
+            (blocks(&pixels), counters)
+        };
+        let ((plain, of_plain), (found, counters)) = (picture(false), picture(true));
+        let total: f32 = plain.iter().map(|b| b.element_sum()).sum::<f32>() / 48.0;
+        for (i, (a, b)) in found.iter().zip(&plain).enumerate() {
+            let error = (*a - *b).abs().max_element() / (b.max_element() + 0.1 * total);
+            assert!(error < 0.01, "{name}, block {i}: {a}, with all shadow rays {b}");
+        }
+        let known = counters.shadow_photons.rays_known_lit + counters.shadow_photons.rays_known_dark;
+        let sent = counters.rays.shadow;
+        println!("{name}: {sent} shadow rays of {}, {known} known", of_plain.rays.shadow);
+        if saves {
+            assert!(2 * sent < of_plain.rays.shadow, "{name}: {sent} shadow rays of {}", of_plain.rays.shadow);
+            assert!(counters.shadow_photons.lit > 0 && counters.shadow_photons.shadow > 0, "{name}");
+        } else {
+            assert_eq!((known, sent), (0, of_plain.rays.shadow), "{name}: light from infinity has no shadow photons");
         }
     }
 }
@@ -293,9 +330,10 @@ fn members_of_each_family_give_the_same_picture() {
 #[test]
 fn parts_sum_to_the_beauty() {
     let world = world(box_scene(0.6));
-    for mode in Mode::ALL {
+    let gather = INDIRECT.iter().map(|member| (Mode::Gather, member.choice));
+    for (mode, indirect) in Mode::ALL.map(|mode| (mode, Indirect::Photons)).into_iter().chain(gather) {
         let aovs = vec![Aov::Direct, Aov::Indirect, Aov::Caustic, Aov::Emitted];
-        let settings = Settings { photons: Some(20_000), aovs: aovs.clone(), ..settings(mode) };
+        let settings = Settings { photons: Some(20_000), aovs: aovs.clone(), indirect, ..settings(mode) };
         let mut renderer = Renderer::new(&world, settings, &Silent).expect("nothing stops it");
         for _ in 0..2 {
             renderer.render_pass(&Silent).expect("nothing stops it");
@@ -304,7 +342,11 @@ fn parts_sum_to_the_beauty() {
         for pixel in renderer.pixels().chunks_exact(layout.channels()) {
             for c in 0..3 {
                 let sum: f32 = aovs.iter().map(|&a| pixel[layout.offset(a).expect("asked for") + c]).sum();
-                assert!((sum - pixel[c]).abs() <= 1e-5 * (1.0 + pixel[c]), "{mode:?}: {sum} {}", pixel[c]);
+                assert!(
+                    (sum - pixel[c]).abs() <= 1e-5 * (1.0 + pixel[c]),
+                    "{mode:?}, {indirect:?}: {sum} {}",
+                    pixel[c]
+                );
             }
         }
     }

@@ -59,6 +59,9 @@ pub struct RenderArgs {
     /// Error up to which a record of the irradiance cache is used, 0 to 1: Ward's a
     #[arg(long, value_name = "A", default_value_t = 0.2, value_parser = values::positive_f32, help_heading = "Light")]
     pub cache_accuracy: f32,
+    /// Send no shadow rays where photons that go on through surfaces tell what is lit, in the mode gather
+    #[arg(long, help_heading = "Light")]
+    pub shadow_photons: bool,
     /// Eye samples a pixel and pass
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = values::count, help_heading = "Light")]
     pub spp: u32,

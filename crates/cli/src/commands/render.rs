@@ -168,6 +168,7 @@ fn options(args: &RenderArgs, begun: Instant) -> std::result::Result<RenderOptio
             gather_rays: args.gather_rays,
             irradiance_every: args.irradiance_every,
             cache_accuracy: args.cache_accuracy,
+            shadow_photons: args.shadow_photons,
             spp: args.spp,
             max_depth: args.max_depth,
             seed: args.seed,

@@ -158,6 +158,13 @@ impl RenderOptions {
                 return Err(Error::setting("--record-queries", what));
             }
         }
+        if settings.shadow_photons && settings.mode != Mode::Gather {
+            return Err(Error::setting("--shadow-photons", "only the mode gather has them; add --mode gather"));
+        }
+        if settings.shadow_photons && self.record_queries.is_some() {
+            let what = "what shadow photons say is not recorded; leave one of them out";
+            return Err(Error::setting("--record-queries", what));
+        }
         Ok(())
     }
 
@@ -243,6 +250,7 @@ mod tests {
         assert!(with(|o| o.settings.irradiance_every = 0).starts_with("--irradiance-every: "));
         assert!(with(|o| o.settings.cache_accuracy = f32::NAN).starts_with("--cache-accuracy: "));
         assert!(with(|o| o.settings.indirect = Indirect::FinalGather).starts_with("--indirect: "));
+        assert!(with(|o| o.settings.shadow_photons = true).starts_with("--shadow-photons: "));
         assert!(with(|o| o.tessellate = Some(-1.0)).starts_with("--tessellate: "));
         assert!(with(|o| o.settings.caustic_radius = Some(0.0)).starts_with("--caustic-radius: "));
         assert!(with(|o| o.settings.support = "boxfixed".into()).contains("did you mean box-fixed?"));

@@ -7,7 +7,7 @@ use photinus_accel::StructureSummary;
 use photinus_profile::{
     AccelProfile, IntersectProfile, PhotonProfile, Profile, ProfileSeconds, RayProfile, SearchProfile,
 };
-use photinus_render::{Counters, IrradianceCounts, PhotonCounts, PhotonPower, RayCounts, Settings};
+use photinus_render::{Counters, IrradianceCounts, PhotonCounts, PhotonPower, RayCounts, Settings, ShadowPhotonCounts};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -33,6 +33,8 @@ pub struct PhaseStats {
     pub map_build: Seconds,
     /// Irradiance is computed at photons.
     pub irradiance: Seconds,
+    /// Photons go on through what they hit.
+    pub shadow_photons: Seconds,
     /// A cache of irradiance is filled.
     pub irradiance_cache: Seconds,
     /// Rays from the camera, and estimates where they land.
@@ -122,6 +124,8 @@ pub struct Stats {
     pub search: SearchProfile,
     /// Irradiance that was computed, looked up and interpolated.
     pub irradiance: IrradianceCounts,
+    /// Shadow photons and the shadow rays that they save.
+    pub shadow_photons: ShadowPhotonCounts,
     /// Photons.
     pub photons: PhotonStats,
     /// Photons sent out for caustics alone.

@@ -191,6 +191,17 @@ impl Bsdf {
         sum
     }
 
+    /// What irradiance is multiplied by, 1/sr, where all gather lobes are diffuse: exact where none depends on direction, and else,
+    /// under a coat, the share that they scatter over pi, right for light that comes from everywhere alike. None where there is
+    /// a rough lobe, or no gather lobe.
+    pub fn diffuse_factor(&self) -> Option<Vec3> {
+        let gather = self.kinds & LobeSet::GATHER;
+        if gather.is_empty() || gather.intersects(LobeSet::ROUGH_REFLECTION) {
+            return None;
+        }
+        Some(self.constant(gather).unwrap_or_else(|| self.albedo(gather) * std::f32::consts::FRAC_1_PI))
+    }
+
     /// Density over solid angle of [`sample`](Self::sample) with the same set, single directions left out.
     pub fn pdf(&self, set: LobeSet, wi: Vec3) -> f32 {
         let (mut sum, mut total) = (0.0, 0.0);

@@ -4,7 +4,7 @@
 //! The cache is filled before the first eye pass, so that it does not depend on who asks first: visible points of every 16th
 //! pixel, then of every 8th, and so on, in batches. Which points of a batch want a record is decided by the records of the
 //! batches before, the records are computed side by side, and they are added in the order of the points. What an eye pass finds
-//! unknown, and what does not scatter alike from all directions, gathers for itself.
+//! unknown, and where a rough lobe scatters, points gather for themselves.
 
 use super::final_gather::FinalGather;
 use super::gather_rays::{Buffers, GatherRay, GatherRays};
@@ -13,7 +13,6 @@ use crate::bsdf::{Bsdf, LobeSet, TransportMode};
 use crate::control::{Cancelled, Phase};
 use crate::counters::Counters;
 use crate::eye_pass::EyePass;
-use crate::maps::Scatter;
 use crate::renderer::RenderError;
 use crate::tile::Part;
 use crate::trace::Tracer;
@@ -151,7 +150,7 @@ fn candidates(preparing: &Preparing, pixels: &[[u32; 2]]) -> (Vec<Candidate>, Co
             let point = world.surface(&look.ray, hit, look.width);
             let material = world.shapes[point.shape as usize].material;
             world.materials.resolve_into(material, &point, -look.ray.dir, &mut bsdf);
-            if bsdf.has(LobeSet::GATHER) && bsdf.constant(LobeSet::GATHER).is_some() {
+            if bsdf.diffuse_factor().is_some() {
                 found.push(Candidate {
                     position: point.position,
                     normal: bsdf.shading_normal(),
@@ -225,14 +224,11 @@ impl IndirectEstimate for CachedIrradiance {
     fn answer(&self, eye: &EyePass, mut batch: Batch) {
         let mut unknown = Vec::new();
         for (i, (e, kept)) in batch.estimates.list.iter().zip(&batch.estimates.kept).enumerate() {
-            let found = match e.scatter {
-                Scatter::Constant(factor) => {
-                    let irradiance = self.cache.at(e.query.position, kept.bsdf.shading_normal());
-                    irradiance.map(|irradiance| factor * irradiance)
-                }
-                Scatter::ByDirection(_) => None,
+            let light = |factor: Vec3| {
+                let irradiance = self.cache.at(e.query.position, kept.bsdf.shading_normal());
+                irradiance.map(|irradiance| factor * irradiance)
             };
-            match found {
+            match kept.bsdf.diffuse_factor().and_then(light) {
                 Some(light) => {
                     batch.counters.irradiance.interpolated += 1;
                     batch.tile.add(e.path, Part::Indirect, e.throughput * light);

@@ -1,13 +1,13 @@
 //! `irradiance-photons`: the irradiance of the global map, computed at one photon in so many and looked up at the nearest with a
 //! like normal (Christensen, "Faster Photon Map Global Illumination", Journal of Graphics Tools 4(3), 1999).
 //!
-//! Surfaces whose scattering depends on the photon's direction keep their own density estimate.
+//! Surfaces with a rough lobe keep their own density estimate.
 
 use super::known::known_irradiance;
 use super::{Batch, IndirectEstimate, Preparing, photons};
 use crate::counters::Counters;
 use crate::eye_pass::EyePass;
-use crate::maps::{Estimate, Scatter};
+use crate::maps::Estimate;
 use crate::renderer::RenderError;
 use crate::tile::Part;
 use photinus_photons::irradiance::IrradianceAtPhotons;
@@ -30,10 +30,14 @@ pub(super) fn prepare(
 }
 
 impl IndirectEstimate for IrradiancePhotons {
+    fn keeps_surfaces(&self) -> bool {
+        true
+    }
+
     fn answer(&self, eye: &EyePass, mut batch: Batch) {
         let mut others: Vec<Estimate> = Vec::new();
-        for e in &batch.estimates.list {
-            let Scatter::Constant(factor) = e.scatter else {
+        for (e, kept) in batch.estimates.list.iter().zip(&batch.estimates.kept) {
+            let Some(factor) = kept.bsdf.diffuse_factor() else {
                 others.push(*e);
                 continue;
             };

@@ -6,6 +6,7 @@ use super::area::{cosine_hemisphere, uniform_cone, uniform_sphere, uniform_trian
 use super::lights::LightSample;
 use super::panel::{Panel, ShiningPoint, within_part};
 use super::sphere;
+use crate::shadow_photons::NO_SOURCE;
 use crate::{SurfacePoint, world::World};
 use photinus_geometry::{Frame, Ray, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -219,11 +220,11 @@ impl Emitter {
 
 fn of_surface(light: &ShiningPoint, dir: Vec3, pdf: f32) -> LightSample {
     let (target, radiance) = (Some(light.ray_origin(-dir)), light.radiance_to(-dir));
-    LightSample { dir, target, radiance, pdf, delta: false, item: 0 }
+    LightSample { dir, target, radiance, pdf, delta: false, item: 0, source: NO_SOURCE }
 }
 
 fn without_area(dir: Vec3, position: Vec3, radiance: Vec3) -> LightSample {
-    LightSample { dir, target: Some(position), radiance, pdf: 1.0, delta: true, item: 0 }
+    LightSample { dir, target: Some(position), radiance, pdf: 1.0, delta: true, item: 0, source: NO_SOURCE }
 }
 
 fn lambertian(light: &ShiningPoint, u: [f32; 2], area: f32) -> (Ray, Vec3) {

@@ -10,6 +10,7 @@ use super::far::{Disc, Discs};
 use super::guide::{LightGuide, Place};
 use super::sky_pool::SkyPool;
 use super::sky_view::SkyView;
+use crate::shadow_photons::NO_SOURCE;
 use crate::{SurfacePoint, world::World};
 use photinus_geometry::{Ray, Vec3};
 use photinus_scene::Light;
@@ -39,6 +40,8 @@ pub struct LightSample {
     pub delta: bool,
     /// Number of the item that was chosen.
     pub(crate) item: u32,
+    /// Number of the shape that shines, or of the light without area; [`NO_SOURCE`] of light from infinity.
+    pub(crate) source: u32,
 }
 
 /// A photon as it leaves its light.
@@ -71,6 +74,8 @@ pub(crate) enum Item {
 /// The lights of a scene.
 pub struct Lights {
     emitters: Vec<Emitter>,
+    /// Which shape or light without area each emitter is.
+    sources: Vec<u32>,
     /// Parts of all emitters, in order: which emitter, which part.
     parts: Vec<(u32, u32)>,
     /// First part of each emitter.
@@ -97,13 +102,15 @@ impl Lights {
     /// The lights of `world`, chosen in proportion to their power; light from infinity counts what falls on `region`, by
     /// the share of it that `view` finds open.
     pub(crate) fn new(world: &World, region: VisibleRegion, view: &SkyView) -> Self {
-        let mut emitters = Vec::new();
+        let (mut emitters, mut sources, mut shining) = (Vec::new(), Vec::new(), 0);
         let mut first_emitter = vec![u32::MAX; world.shapes.len()];
         for (i, shape) in world.shapes.iter().enumerate() {
             if shape.emission.is_some() {
                 first_emitter[i] = emitters.len() as u32;
                 let prims = shape.first_prim..shape.first_prim + shape.prim_count;
                 emitters.extend(prims.map(|prim| Emitter::of_primitive(world, prim)));
+                sources.resize(emitters.len(), shining);
+                shining += 1;
             }
         }
         emitter::cut(&mut emitters, PART * region.radius);
@@ -122,6 +129,7 @@ impl Lights {
                 Light::Environment(light) => sky = Some(Environment::new(light)),
             }
         }
+        sources.extend((shining..).take(emitters.len() - sources.len()));
         let (mut parts, mut first_part) = (Vec::new(), Vec::new());
         for (i, emitter) in emitters.iter().enumerate() {
             first_part.push(parts.len() as u32);
@@ -168,6 +176,7 @@ impl Lights {
         let table = if dark { AliasTable::default() } else { AliasTable::new(&powers) };
         Self {
             emitters,
+            sources,
             parts,
             first_part,
             clusters,
@@ -268,6 +277,12 @@ impl Lights {
         self.emission.at(point.light()).is_some_and(|(index, ..)| index >= self.emitters.len())
     }
 
+    /// Number of the light, as [`LightSample::source`], of a photon that starts at `point`.
+    pub(crate) fn source_of_start(&self, point: &EmissionPoint) -> u32 {
+        let emitter = self.emission.at(point.light()).and_then(|(index, ..)| self.sources.get(index));
+        emitter.copied().unwrap_or(NO_SOURCE)
+    }
+
     /// Whether any light comes from infinity.
     pub(crate) fn any_far(&self) -> bool {
         self.sky.is_some() || !self.distant.is_empty()
@@ -280,7 +295,7 @@ impl Lights {
 
     /// Bytes of the tables.
     pub fn bytes(&self) -> usize {
-        self.emitters.len() * (size_of::<Emitter>() + 12)
+        self.emitters.len() * (size_of::<Emitter>() + 16)
             + self.parts.len() * 32
             + self.sky.as_ref().map_or(0, |sky| sky.bytes() + SkyPool::bytes())
             + self.discs.bytes()
@@ -390,11 +405,19 @@ impl Lights {
                 let (part, share, _) = self.clusters.sample(group, choice);
                 let (emitter, part) = self.parts[part];
                 let sample = self.emitters[emitter as usize].sample(world, part, from, u);
-                LightSample { pdf: sample.pdf * share, ..sample }
+                LightSample { pdf: sample.pdf * share, source: self.sources[emitter as usize], ..sample }
             }
             Item::Distant(i) => {
                 let Distant { direction, irradiance } = self.distant[i];
-                LightSample { dir: -direction, target: None, radiance: irradiance, pdf: 1.0, delta: true, item: 0 }
+                LightSample {
+                    dir: -direction,
+                    target: None,
+                    radiance: irradiance,
+                    pdf: 1.0,
+                    delta: true,
+                    item: 0,
+                    source: NO_SOURCE,
+                }
             }
             Item::Sky(bin) => {
                 let (dir, radiance, pdf) = match &self.pool {
@@ -408,7 +431,7 @@ impl Lights {
                         (dir, sky.radiance(dir), pdf)
                     }
                 };
-                LightSample { dir, target: None, radiance, pdf, delta: false, item: 0 }
+                LightSample { dir, target: None, radiance, pdf, delta: false, item: 0, source: NO_SOURCE }
             }
         };
         let useful = sample.dir.is_finite()
