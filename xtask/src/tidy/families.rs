@@ -19,6 +19,7 @@ const FAMILIES: &[Family] = &[
     Family { folder: "crates/accel/src/structures", list: "crates/accel/src/list.rs", marker: "" },
     Family { folder: "crates/photons/src/searches", list: "crates/photons/src/list.rs", marker: "" },
     Family { folder: "crates/photons/src/supports", list: "crates/photons/src/supports/list.rs", marker: "" },
+    Family { folder: "crates/render/src/indirect", list: "crates/render/src/indirect/mod.rs", marker: "const ABOUT" },
     Family { folder: "crates/image/src/tonemap", list: "crates/image/src/tonemap/list.rs", marker: "" },
     Family { folder: "crates/render/src/bsdf/members", list: "crates/render/src/bsdf/members/mod.rs", marker: "" },
     Family { folder: "crates/scene/src/load", list: "crates/scene/src/load/list.rs", marker: "fn looks_like(" },
