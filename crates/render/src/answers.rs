@@ -25,7 +25,7 @@ impl EyePass<'_> {
         let Some(pixels) = self.cut_pixels else { return vec![1.0; list.len()] };
         let sample = [tile.sample, self.pass * self.spp + tile.sample];
         let origin = [self.crop[0], self.crop[1]];
-        let looker = Looker { world: self.world, kernel, seed: self.seed, origin, sample };
+        let looker = Looker { world: self.world, kernel, pixels: Some(pixels), seed: self.seed, origin, sample };
         let pixel = |path: u32| tile.window_pixel(path);
         let look = |(e, found): (&Estimate, &Estimated)| {
             let mine = found.radiance.element_sum();
@@ -33,7 +33,7 @@ impl EyePass<'_> {
             Look { radius: found.radius, density: found.density, count: points_for(mine / (mine + others)) }
         };
         let looks: Vec<Look> = list.iter().zip(found).map(look).collect();
-        looker.shares(pixels, list, &looks, pixel, tracer, counters)
+        looker.shares(list, &looks, pixel, tracer, counters)
     }
 
     /// Answers the estimates of a batch from the maps.

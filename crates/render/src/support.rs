@@ -102,6 +102,8 @@ impl Point {
 pub(crate) struct Looker<'a> {
     pub world: &'a World,
     pub kernel: Kernel,
+    /// What passes know; none of estimates at photons.
+    pub pixels: Option<&'a CutPixels>,
     pub seed: u64,
     /// The window's first pixel of the film.
     pub origin: [u32; 2],
@@ -112,14 +114,13 @@ pub(crate) struct Looker<'a> {
 impl<'a> Looker<'a> {
     /// Looks at the discs of estimates at photons, number `first` and those that follow.
     pub fn of_photons(world: &'a World, kernel: Kernel, seed: u64, first: u32) -> Self {
-        Self { world, kernel, seed, origin: [first, ROW_OF_PHOTONS], sample: [0; 2] }
+        Self { world, kernel, pixels: None, seed, origin: [first, ROW_OF_PHOTONS], sample: [0; 2] }
     }
 
     /// The share of each estimate's disc that is surface, `LEAST_SHARE` to `MOST_SHARE`, one `look` each. `pixel` gives the place of
     /// a path in the window.
     pub fn shares(
         &self,
-        pixels: &CutPixels,
         estimates: &[Estimate],
         looks: &[Look],
         pixel: impl Fn(u32) -> [u32; 2],
@@ -127,14 +128,15 @@ impl<'a> Looker<'a> {
         counters: &mut Counters,
     ) -> Vec<f32> {
         let mut shares = vec![1.0; estimates.len()];
+        let Some(pixels) = self.pixels else { return shares };
         if pixels.is_known() {
-            self.look(pixels, estimates, looks, &pixel, |place| pixels.were_cut(place), &mut shares, tracer, counters);
+            self.look(estimates, looks, &pixel, |place| pixels.were_cut(place), &mut shares, tracer, counters);
         } else {
             // One pixel of a square first, then the others of those squares where a disc is cut.
             let is_first = |place: [u32; 2]| place.iter().all(|c| c % COARSE == 0);
-            self.look(pixels, estimates, looks, &pixel, is_first, &mut shares, tracer, counters);
+            self.look(estimates, looks, &pixel, is_first, &mut shares, tracer, counters);
             let is_next = |place| !is_first(place) && pixels.are_cut(place);
-            self.look(pixels, estimates, looks, &pixel, is_next, &mut shares, tracer, counters);
+            self.look(estimates, looks, &pixel, is_next, &mut shares, tracer, counters);
         }
         shares
     }
@@ -169,7 +171,6 @@ impl<'a> Looker<'a> {
     /// Looks at the discs of those pixels that are wanted.
     fn look(
         &self,
-        pixels: &CutPixels,
         estimates: &[Estimate],
         looks: &[Look],
         pixel: impl Fn(u32) -> [u32; 2],
@@ -178,6 +179,7 @@ impl<'a> Looker<'a> {
         tracer: &mut Tracer,
         counters: &mut Counters,
     ) {
+        let Some(pixels) = self.pixels else { return };
         let wanted: Vec<usize> = (0..estimates.len()).filter(|&i| is_wanted(pixel(estimates[i].path))).collect();
         let mut seen: Vec<Seen> = estimates.iter().zip(looks).map(|_| Seen::default()).collect();
         for &i in &wanted {

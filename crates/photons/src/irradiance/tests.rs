@@ -24,8 +24,11 @@ fn random(s: &mut Sampler) -> Vec3 {
     Vec3::new(s.next_1d(), s.next_1d(), s.next_1d())
 }
 
+/// A set's name, a length that suits it, and its points with their normals.
+type Points = (&'static str, f32, Vec<(Vec3, Vec3)>);
+
 /// Points with normals: in a volume, on two sides of a plane, on a lattice with ties, on a line, at one place, far and wide.
-fn sets() -> Vec<(&'static str, f32, Vec<(Vec3, Vec3)>)> {
+fn sets() -> Vec<Points> {
     let set = |number: u64, count: usize, place: &dyn Fn(&mut Sampler) -> (Vec3, Vec3)| -> Vec<(Vec3, Vec3)> {
         (0..count).map(|i| place(&mut sampler(number, i))).collect()
     };
@@ -76,7 +79,9 @@ fn even_photons() -> Vec<Photon> {
         .map(|i| {
             let mut s = sampler(60, i);
             // Plain random numbers: photons that are better spread than that would hide what chance does.
-            (0..32).for_each(|_| drop(s.next_1d()));
+            for _ in 0..32 {
+                s.next_1d();
+            }
             let position = Vec3::new(s.next_1d() * 10.0, s.next_1d() * 10.0, 0.0);
             let normal = if s.next_1d() < 0.1 { -Vec3::Z } else { Vec3::Z };
             Photon::new(position, Vec3::new(1.0, 0.5, 0.25) * 1e-3, normal, normal, 2, false).unwrap()
