@@ -23,7 +23,11 @@ tasks:
   tidy             check the house rules
   bench pictures [--quick] [--json] [--repeats N] [--only ENGINE,...]
                    the equal-time table: pictures by all engines in the same processor time; installs the peers below
-                   target/ with pip; --quick is one repeat at 10 s, --repeats and --only make it smaller or larger";
+                   target/ with pip; --quick is one repeat at 10 s, --repeats and --only make it smaller or larger
+  bench rays [--quick] [--json] [--repeats N] [--only ENGINE,...]
+                   rays a second of the default structure beside others'
+  bench photons [--quick] [--json] [--repeats N] [--only ENGINE,...]
+                   photon searches of the default search beside others'; --quick takes under a minute";
 
 /// What a task says when it did not succeed: one message for the person who ran it.
 type Failure = String;

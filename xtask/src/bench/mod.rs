@@ -1,7 +1,10 @@
 //! Measurements against what a user would pick instead: one program, so that anyone can repeat them.
 
+mod commands;
 mod machine;
+mod photons;
 mod pictures;
+mod program;
 mod rays;
 mod report;
 mod timed;
@@ -25,7 +28,7 @@ pub struct Options {
 type Bench = (&'static str, fn(&Path, &Options) -> Result<(), Failure>);
 
 /// All of them.
-const BENCHES: &[Bench] = &[("pictures", pictures::run), ("rays", rays::run)];
+const BENCHES: &[Bench] = &[("pictures", pictures::run), ("rays", rays::run), ("photons", photons::run)];
 
 /// Runs `bench NAME [--quick] [--json] [--repeats N] [--only ENGINE,...]`; none where the words are not of this form.
 pub fn run(root: &Path, words: &[&str]) -> Option<Result<(), Failure>> {

@@ -57,6 +57,16 @@ impl Row {
     }
 }
 
+/// Whether a row belongs to ours: the engine itself, or one of its variants, which are no peers.
+fn is_ours(engine: &str) -> bool {
+    engine.strip_prefix(OURS).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+}
+
+/// Whether a unit is a time, not a rate.
+pub fn less_is_better(unit: &str) -> bool {
+    unit.starts_with("ns_per_") || (unit.ends_with("_s") && !unit.contains("_per_"))
+}
+
 /// The middle value, or the mean of the middle two.
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
@@ -87,7 +97,7 @@ fn fill_ratios(rows: &mut [Row], better: fn(f64, f64) -> f64, ratio: fn(f64, f64
             continue;
         }
         let kind = |row: &Row| (row.set.clone(), row.size.clone(), row.threads, row.unit);
-        let alike = |row: &&Row| row.engine != OURS && kind(row) == kind(ours);
+        let alike = |row: &&Row| !is_ours(&row.engine) && kind(row) == kind(ours);
         let best = rows.iter().filter(alike).filter_map(|row| row.median).reduce(better);
         let ratio = best.zip(ours.median).map(|(best, ours)| ratio(best, ours));
         rows[i].ratio_to_best_peer = ratio.filter(|ratio| ratio.is_finite());
@@ -133,10 +143,9 @@ impl Report {
             for (set, unit) in unique(rows.iter().map(|row| (row.set.as_str(), row.unit))) {
                 let of_set: Vec<&&Row> = rows.iter().filter(|row| row.set == set && row.unit == unit).collect();
                 let find = |engine: &str| of_set.iter().find(|row| row.engine == engine).and_then(|row| row.median);
-                let less_is_better = unit.ends_with("_s") && !unit.contains("_per_");
                 let shown = |engine: &&str| {
                     let Some(value) = find(engine) else { return "-".to_owned() };
-                    let ratio = find(OURS).map(|ours| if less_is_better { value / ours } else { ours / value });
+                    let ratio = find(OURS).map(|ours| if less_is_better(unit) { value / ours } else { ours / value });
                     let ratio = ratio.filter(|_| *engine != OURS);
                     short(value) + &ratio.map_or(String::new(), |ratio| format!(" ({ratio:.2})"))
                 };
@@ -293,13 +302,15 @@ mod tests {
     fn rates_are_compared_the_other_way_and_threads_apart() {
         let mut rows = vec![row("a", OURS, "mrays_per_s", &[6.0]), row("a", "good", "mrays_per_s", &[4.0])];
         rows.push(row("a", "bad", "mrays_per_s", &[1.0]));
+        // A variant of ours is no peer.
+        rows.push(row("a", "photinus-quick", "mrays_per_s", &[8.0]));
         rows.push(Row { threads: 2, ..row("a", OURS, "mrays_per_s", &[9.0]) });
         fill_ratios_of_rates(&mut rows);
-        assert_eq!((rows[0].ratio_to_best_peer, rows[3].ratio_to_best_peer), (Some(1.5), None));
+        assert_eq!((rows[0].ratio_to_best_peer, rows[4].ratio_to_best_peer), (Some(1.5), None));
         let report = Report { bench: "rays", version: "0".into(), machine: Machine::here(), notes: Vec::new(), rows };
         let text = report.wide_tables();
-        assert!(text.contains("| set | unit | photinus | good | bad |"), "{text}");
-        assert!(text.contains("| a | mrays_per_s | 6.00 | 4.00 (1.50) | 1.00 (6.00) |"), "{text}");
+        assert!(text.contains("| set | unit | photinus | good | bad | photinus-quick |"), "{text}");
+        assert!(text.contains("| a | mrays_per_s | 6.00 | 4.00 (1.50) | 1.00 (6.00) | 8.00 (0.75) |"), "{text}");
         assert!(text.contains("8x8, threads: 2"), "{text}");
     }
 

@@ -26,6 +26,9 @@ const BRUTE_TWIN_TEST: (&str, &str) =
 /// What another's library reads and writes lies where its headers say.
 const EMBREE_TEST: (&str, &str) = ("benches/peers/rays/src/engines/embree.rs", "records_lie_as_in_the_headers");
 
+/// The same of the shim around a C++ library.
+const NANOFLANN_TEST: (&str, &str) = ("benches/peers/photons/src/engines/nanoflann.rs", "records_lie_as_in_the_shim");
+
 /// Without the setting memory grows from pass to pass.
 const ALLOCATOR_TEST: (&str, &str) = ("crates/cli/tests/memory.rs", "memory_stays_as_predicted_over_many_passes");
 
@@ -39,6 +42,7 @@ const SIEVE_TWIN_TEST: (&str, &str) =
 const KERNELS: &[Kernel] = &[
     Kernel { path: "crates/memory/src/huge_array.rs", twin_test: HUGE_TEST },
     Kernel { path: "benches/peers/rays/src/engines/embree.rs", twin_test: EMBREE_TEST },
+    Kernel { path: "benches/peers/photons/src/engines/nanoflann.rs", twin_test: NANOFLANN_TEST },
     Kernel { path: "crates/cli/src/allocator.rs", twin_test: ALLOCATOR_TEST },
     Kernel { path: "crates/photons/src/searches/brute_blocked/kernels.rs", twin_test: SIEVE_TWIN_TEST },
     Kernel { path: "crates/photons/src/searches/grid/avx2.rs", twin_test: GRID_TWIN_TEST },

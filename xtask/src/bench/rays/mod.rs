@@ -4,9 +4,9 @@ mod driver;
 mod peers;
 mod sources;
 
-use super::Options;
 use super::machine::{Machine, said};
 use super::report::{Report, Row, fill_ratios_of_errors, fill_ratios_of_rates};
+use super::{Options, program};
 use crate::Failure;
 use driver::Measured;
 use peers::Provided;
@@ -24,7 +24,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let version = format!("photinus {} ({commit})", env!("CARGO_PKG_VERSION"));
     let folder = root.join("target/peers/rays");
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let program = driver::build(root, &folder)?;
+    let program = program::build(root, &folder, "rays")?;
     let mut notes = Vec::new();
     let embree = peers::embree(root, &folder).map_err(|why| notes.push(format!("no Embree: {why}"))).ok();
     let (meshes, missing): (Vec<Provided>, Vec<Provided>) =

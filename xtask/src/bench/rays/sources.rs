@@ -1,7 +1,8 @@
 //! The meshes: a built-in room, rooms furnished with real models, and scanned or modelled ones from outside.
 
-use super::peers::{Provided, run, unpack};
+use super::peers::Provided;
 use crate::Failure;
+use crate::bench::commands::{debian, run, unpack};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -35,13 +36,8 @@ fn furniture(folder: &Path) -> Result<PathBuf, Failure> {
         return Ok(models);
     }
     std::fs::create_dir_all(&models).map_err(|e| format!("{}: {e}", models.display()))?;
-    run(Command::new("apt-get").args(["download", "sweethome3d-furniture"]).current_dir(&place))?;
-    let files = std::fs::read_dir(&place).map_err(|e| e.to_string())?.flatten().map(|entry| entry.path());
-    let package = files.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "deb"));
-    let package = package.ok_or("apt-get fetched no package")?;
-    run(Command::new("dpkg-deb").arg("-x").arg(&package).arg(&place))?;
+    debian("sweethome3d-furniture", &place)?;
     unpack(&place.join("usr/share/sweethome3d/furniture/BlendSwap-CC-0.sh3f"), &models)?;
-    std::fs::remove_file(package).ok();
     std::fs::write(models.join("complete"), "").map_err(|e| e.to_string())?;
     Ok(models)
 }
