@@ -27,7 +27,7 @@ tasks:
   bench rays [--quick] [--json] [--repeats N] [--only ENGINE,...]
                    rays a second of the default structure beside others'
   bench photons [--quick] [--json] [--repeats N] [--only ENGINE,...]
-                   photon searches of the default search beside others'; --quick takes under a minute";
+                   photon searches of the default search beside others'; --quick takes a minute";
 
 /// What a task says when it did not succeed: one message for the person who ran it.
 type Failure = String;

@@ -74,7 +74,8 @@ fn compare(question: Question, ours: &[Answer], theirs: &[Answer]) -> Result<Str
     };
     let is_off = |(a, b): &(&Answer, &Answer)| {
         let (a, b) = (a.farthest_sq.sqrt(), b.farthest_sq.sqrt());
-        !((a - b).abs() <= DISTANCE * a)
+        let is_near = (a - b).abs() <= DISTANCE * a;
+        !is_near
     };
     let distances = match question {
         Question::Nearest => share(pairs().filter(is_off).count() as f64, ours.len() as f64),

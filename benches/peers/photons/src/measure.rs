@@ -76,7 +76,10 @@ pub fn photons(data: &Data, count: usize, arguments: &Arguments, pools: &[(usize
                     continue;
                 }
                 let note = match agreed {
-                    Ok(said) => format!("{}; {said}", runner.engine.about(set)),
+                    Ok(said) => {
+                        let work = runner.engine.work(set).map_or_else(String::new, |work| format!("; {work}"));
+                        format!("{}; {said}{work}", runner.engine.about(set))
+                    }
                     Err(why) => why.clone(),
                 };
                 rows.push(row(set.name, runner.name, "ns_per_search", *threads, values, note));

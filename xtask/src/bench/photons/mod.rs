@@ -17,6 +17,8 @@ const PHOTONS: &[usize] = &[65_536, 1_000_000, 10_000_000];
 /// Queries of a set, about; fewer where it is to be quick.
 const QUERIES: usize = 1 << 17;
 const FEW_QUERIES: usize = 1 << 16;
+/// Measurements of each.
+const REPEATS: usize = 3;
 /// Folder of the suite of real scenes, where it is set.
 const SCENES: &str = "PHOTINUS_SCENES";
 /// The real scene.
@@ -59,7 +61,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         python: python.as_ref(),
         work: &work,
         only: &options.only,
-        repeats: options.repeats.unwrap_or(if options.quick { 3 } else { 5 }),
+        repeats: options.repeats.unwrap_or(REPEATS),
         threads: &threads,
         queries: if options.quick { FEW_QUERIES } else { QUERIES },
     };

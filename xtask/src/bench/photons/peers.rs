@@ -63,7 +63,7 @@ pub fn python(root: &Path, folder: &Path) -> Result<[PathBuf; 2], Failure> {
 /// Versions that the lock pins, in words.
 pub fn pinned(root: &Path) -> String {
     let lock = std::fs::read_to_string(root.join(FOLDER).join("requirements.lock")).unwrap_or_default();
-    let pins = lock.lines().filter_map(|line| Some(line.split(' ').next()?.split_once("==")?));
+    let pins = lock.lines().filter_map(|line| line.split(' ').next()?.split_once("=="));
     pins.map(|(name, version)| format!("{name} {version}")).collect::<Vec<_>>().join(", ")
 }
 

@@ -100,6 +100,11 @@ pub trait Engine: Send {
 
     /// What it does, in a few words.
     fn about(&self, set: &Set) -> &'static str;
+
+    /// What searches meet on the way, in words, where the engine counts it.
+    fn work(&self, _: &Set) -> Option<String> {
+        None
+    }
 }
 
 /// Makes an engine.

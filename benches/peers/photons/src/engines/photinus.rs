@@ -6,6 +6,7 @@ use crate::clock::timed;
 use crate::sets::{K, Question, Set};
 use photinus_geometry::Vec3;
 use photinus_photons::{BuildOptions, DEFAULT_SEARCH, Gathered, GatheredNearest, Kernel, Photon, Search};
+use photinus_profile::SearchCounters;
 use rayon::prelude::*;
 
 /// Queries that a thread takes at a time where they are asked one by one.
@@ -96,6 +97,17 @@ impl Engine for Ours {
 
     fn about(&self, _: &Set) -> &'static str {
         if self.lists { "list, all normals" } else { "flux, facing normals" }
+    }
+
+    fn work(&self, set: &Set) -> Option<String> {
+        let search = self.search.as_deref().filter(|_| !self.lists && set.question == Question::Flux)?;
+        let mut counters = SearchCounters::default();
+        let mut out = vec![Gathered::default(); set.queries.len()];
+        search.gather_counted(&set.queries, Kernel::Constant, &mut out, &mut counters);
+        let most = out.iter().map(|sums| sums.count).max().unwrap_or(0);
+        let [tested, found] =
+            [counters.photons_tested, counters.photons_found].map(|count| count as f64 / set.queries.len() as f64);
+        Some(format!("{tested:.0} photons tested and {found:.0} found a search, {most} at most"))
     }
 }
 
