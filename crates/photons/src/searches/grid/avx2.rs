@@ -5,6 +5,7 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
 use super::even;
+use super::facing::{ALL, cones, is_unit};
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
 use super::kth::{kth_least, pad};
 use super::shared;
@@ -28,6 +29,7 @@ pub(crate) fn kernels() -> Option<VectorKernels> {
     has_all.then_some(VectorKernels {
         name: "avx2",
         cull,
+        facing,
         prefetch,
         gather,
         select,
@@ -38,9 +40,14 @@ pub(crate) fn kernels() -> Option<VectorKernels> {
     })
 }
 
-fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, facing: u32, hits: &mut Vec<u32>) {
     // SAFETY: `kernels` hands this function out only where the processor has AVX2, POPCNT and BMI1.
-    unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
+    unsafe { cull_boxes(boxes, ranges, position, r2, facing, hits) }
+}
+
+fn facing(normal: Vec3) -> u32 {
+    // SAFETY: as above.
+    unsafe { facing_ways(normal) }
 }
 
 fn prefetch(blocks: &[Block], hits: &[u32]) {
@@ -185,9 +192,26 @@ fn tree_sum([low, high]: [__m256; 2]) -> f32 {
     _mm_cvtss_f32(_mm_add_ss(v, _mm_shuffle_ps::<1>(v, v)))
 }
 
+#[target_feature(enable = "avx2")]
+fn facing_ways(normal: Vec3) -> u32 {
+    if !is_unit(normal) {
+        return ALL;
+    }
+    let (cones, normal) = (cones(), splat(normal));
+    let ways = |part: usize| {
+        // SAFETY: all four parts of the 32 numbers are 32 bytes.
+        let load = |row: &[f32; 32]| unsafe { _mm256_loadu_ps(row[part * HALF..].as_ptr()) };
+        let middle = [load(&cones.middles[0]), load(&cones.middles[1]), load(&cones.middles[2])];
+        (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(dot(normal, middle), load(&cones.limits))) as u32)
+            << (part * HALF)
+    };
+    ways(0) | ways(1) | ways(2) | ways(3)
+}
+
 #[target_feature(enable = "avx2,bmi1")]
-fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, facing: u32, hits: &mut Vec<u32>) {
     let position = splat(position);
+    let facing = _mm256_set1_epi32(facing as i32);
     let r2 = _mm256_set1_ps(r2);
     let zero = _mm256_setzero_ps();
     for range in ranges {
@@ -203,7 +227,12 @@ fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hit
                 _mm256_max_ps(outside, zero)
             };
             let d = [axis(0), axis(1), axis(2)];
-            let near = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(dot(d, d), r2)) as u32;
+            let lanes = &boxes.facing[first as usize..][..HALF];
+            // SAFETY: the slice covers the 32 bytes read.
+            let ways = unsafe { _mm256_loadu_si256(lanes.as_ptr().cast()) };
+            let away = _mm256_cmpeq_epi32(_mm256_and_si256(ways, facing), _mm256_setzero_si256());
+            let near = _mm256_andnot_ps(_mm256_castsi256_ps(away), _mm256_cmp_ps::<_CMP_LE_OQ>(dot(d, d), r2));
+            let near = _mm256_movemask_ps(near) as u32;
             let mut near = near & ((1u32 << (range.end - first).min(HALF as u32)) - 1);
             while near != 0 {
                 hits.push(first + near.trailing_zeros());

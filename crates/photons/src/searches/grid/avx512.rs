@@ -5,6 +5,7 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::Candidates;
 use super::even;
+use super::facing::{ALL, cones, is_unit};
 use super::kernels::{CONE, CONSTANT, EPANECHNIKOV, GAUSSIAN, NormalMemo, Selected, VectorKernels, kernel_index};
 use super::kth::{kth_least, pad};
 use super::shared;
@@ -25,6 +26,7 @@ pub(crate) fn kernels() -> Option<VectorKernels> {
     has_all.then_some(VectorKernels {
         name: "avx512",
         cull,
+        facing,
         prefetch,
         gather,
         select,
@@ -35,9 +37,14 @@ pub(crate) fn kernels() -> Option<VectorKernels> {
     })
 }
 
-fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, facing: u32, hits: &mut Vec<u32>) {
     // SAFETY: `kernels` hands this function out only where the processor has AVX-512F, POPCNT and BMI1.
-    unsafe { cull_boxes(boxes, ranges, position, r2, hits) }
+    unsafe { cull_boxes(boxes, ranges, position, r2, facing, hits) }
+}
+
+fn facing(normal: Vec3) -> u32 {
+    // SAFETY: as above.
+    unsafe { facing_ways(normal) }
 }
 
 fn prefetch(blocks: &[Block], hits: &[u32]) {
@@ -192,9 +199,25 @@ pub(super) fn tree_sum(v: __m512) -> f32 {
     _mm_cvtss_f32(_mm_add_ss(v, _mm_shuffle_ps::<1>(v, v)))
 }
 
+#[target_feature(enable = "avx512f")]
+fn facing_ways(normal: Vec3) -> u32 {
+    if !is_unit(normal) {
+        return ALL;
+    }
+    let (cones, normal) = (cones(), splat(normal));
+    let ways = |half: usize| {
+        // SAFETY: both halves of the 32 numbers are 64 bytes.
+        let load = |row: &[f32; 32]| unsafe { _mm512_loadu_ps(row[half * LANES..].as_ptr()) };
+        let middle = [load(&cones.middles[0]), load(&cones.middles[1]), load(&cones.middles[2])];
+        u32::from(_mm512_cmp_ps_mask::<_CMP_GE_OQ>(dot(normal, middle), load(&cones.limits)))
+    };
+    ways(0) | ways(1) << LANES
+}
+
 #[target_feature(enable = "avx512f,popcnt")]
-fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, facing: u32, hits: &mut Vec<u32>) {
     let position = splat(position);
+    let facing = _mm512_set1_epi32(facing as i32);
     let r2 = _mm512_set1_ps(r2);
     let zero = _mm512_setzero_ps();
     let ascending = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -213,6 +236,10 @@ fn cull_boxes(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hit
             let d = [axis(0), axis(1), axis(2)];
             let in_range = _mm512_cmplt_epu32_mask(ascending, _mm512_set1_epi32((range.end - first) as i32));
             let near = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(in_range, dot(d, d), r2);
+            let lanes = &boxes.facing[first as usize..][..LANES];
+            // SAFETY: the slice covers the 64 bytes read.
+            let ways = unsafe { _mm512_loadu_si512(lanes.as_ptr().cast()) };
+            let near = _mm512_mask_test_epi32_mask(near, ways, facing);
             let ids = _mm512_add_epi32(ascending, _mm512_set1_epi32(first as i32));
             hits.reserve(LANES);
             // SAFETY: there is room for sixteen more, of which the first ones, as many as `near` has bits, are kept.

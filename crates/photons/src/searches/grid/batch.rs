@@ -82,7 +82,7 @@ impl Grid {
     #[inline]
     fn reach(&self, query: &GatherQuery, kernel: Kernel, scratch: &mut Scratch) -> PreparedQuery {
         let prepared = PreparedQuery::new(query, kernel);
-        self.find_blocks(query.position, query.radius, prepared.r2, scratch);
+        self.find_facing(query.position, query.normal, query.radius, prepared.r2, scratch);
         prepared
     }
 

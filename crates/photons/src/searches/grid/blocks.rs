@@ -1,5 +1,6 @@
-//! Photons sixteen at a time, field by field: the form that the vector kernels read; and the blocks' boxes.
+//! Photons sixteen at a time, field by field: the form that the vector kernels read; and the blocks' boxes and normals.
 
+use super::facing;
 use crate::Photon;
 use photinus_geometry::{Aabb, Vec3};
 use rayon::prelude::*;
@@ -91,21 +92,27 @@ impl Block {
 pub(crate) struct Boxes {
     /// Least x, y, z, then largest x, y, z.
     pub(crate) bounds: [Vec<f32>; 6],
+    /// Which ways their photons face, see [`facing`].
+    pub(crate) facing: Vec<u32>,
 }
 
 impl Boxes {
     /// The boxes of blocks, each of which has at least one photon.
     pub(crate) fn new(blocks: &[Block]) -> Self {
-        let boxes: Vec<Aabb> = blocks.par_iter().with_min_len(BLOCKS_A_TASK).map(Block::bounds).collect();
+        let (mut boxes, mut facing) = (Vec::new(), Vec::new());
+        let described = blocks.par_iter().with_min_len(BLOCKS_A_TASK).map(|b| (b.bounds(), facing::of_block(b)));
+        described.unzip_into_vecs(&mut boxes, &mut facing);
+        facing.extend([0; LANES]);
         let bounds = std::array::from_fn(|side| {
             let of = |b: &Aabb| if side < 3 { b.min[side] } else { b.max[side - 3] };
             boxes.iter().map(of).chain([f32::NAN; LANES]).collect()
         });
-        Self { bounds }
+        Self { bounds, facing }
     }
 
     /// Memory, bytes.
     pub(crate) fn bytes(&self) -> usize {
-        self.bounds.iter().map(|b| b.capacity() * size_of::<f32>()).sum()
+        let facing = self.facing.capacity() * size_of::<u32>();
+        facing + self.bounds.iter().map(|b| b.capacity() * size_of::<f32>()).sum::<usize>()
     }
 }

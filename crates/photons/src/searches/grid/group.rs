@@ -171,7 +171,11 @@ impl Group<'_> {
         let normals = Normals::of(members);
         (query.position, query.r2, query.normal) = (ball.centre, extent * extent, normals.middle);
         let finder = &mut self.finder;
-        self.grid.find_blocks(query.position, extent, query.r2, &mut finder.scratch);
+        if normals.are_same {
+            self.grid.find_facing(query.position, query.normal, extent, query.r2, &mut finder.scratch);
+        } else {
+            self.grid.find_blocks(query.position, extent, query.r2, &mut finder.scratch);
+        }
         let reached = self.grid.photons_in(&finder.scratch);
         if reached > MOST_SHARED {
             return false;

@@ -29,8 +29,11 @@ pub(crate) fn kernel_index(kernel: Kernel) -> u8 {
 }
 
 /// Appends the blocks, of ascending ranges that do not overlap, whose boxes come within a squared radius of a
-/// position. The box distance repeats the operations of the photon distance, so that rounding loses no photon.
-pub(crate) type Cull = fn(&Boxes, &[Range<u32>], Vec3, f32, &mut Vec<u32>);
+/// position and whose photons face one of these ways. The box distance repeats the operations of the photon distance, so that
+/// rounding loses no photon.
+pub(crate) type Cull = fn(&Boxes, &[Range<u32>], Vec3, f32, u32, &mut Vec<u32>);
+/// Ways in which photons that pass a query's test of normals may face, see [`super::facing::of_query`].
+pub(crate) type Facing = fn(Vec3) -> u32;
 /// Asks for what [`Gather`] reads of these blocks to be brought near.
 pub(crate) type Prefetch = fn(&[Block], &[u32]);
 /// Sums what a query finds in these blocks.
@@ -72,6 +75,7 @@ pub(crate) struct SharedKernels {
 pub(crate) struct VectorKernels {
     pub(crate) name: &'static str,
     pub(crate) cull: Cull,
+    pub(crate) facing: Facing,
     pub(crate) prefetch: Prefetch,
     pub(crate) gather: Gather,
     pub(crate) select: Select,

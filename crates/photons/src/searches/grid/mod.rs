@@ -15,6 +15,7 @@ mod build;
 mod candidates;
 mod cells;
 mod even;
+mod facing;
 mod group;
 mod kernels;
 mod kth;
@@ -112,7 +113,8 @@ impl Search for Grid {
         }
         let mut scratch = Scratch::new();
         for (query, out) in queries.iter().zip(out) {
-            self.find_blocks(query.position, query.radius, radius_sq(query.position, query.radius), &mut scratch);
+            let r2 = radius_sq(query.position, query.radius);
+            self.find_facing(query.position, query.normal, query.radius, r2, &mut scratch);
             *counters += SearchCounters {
                 searches: 1,
                 photons_tested: self.photons_in(&scratch),
@@ -124,7 +126,7 @@ impl Search for Grid {
     fn visit(&self, query: &GatherQuery, visit: &mut dyn FnMut(&Photon, f32)) {
         let mut scratch = Scratch::new();
         let prepared = PreparedQuery::new(query, Kernel::Constant);
-        self.find_blocks(query.position, query.radius, prepared.r2, &mut scratch);
+        self.find_facing(query.position, query.normal, query.radius, prepared.r2, &mut scratch);
         let (mut memo, mut selected) = (NormalMemo::NONE, Vec::with_capacity(scratch.hits.len()));
         (self.kernels.select)(&self.blocks, &scratch.hits, &prepared, &mut memo, &mut selected);
         self.hand_out(&selected, visit);
@@ -137,7 +139,8 @@ impl Search for Grid {
             visit(photon, d2);
         });
         let mut scratch = Scratch::new();
-        self.find_blocks(query.position, query.radius, radius_sq(query.position, query.radius), &mut scratch);
+        let r2 = radius_sq(query.position, query.radius);
+        self.find_facing(query.position, query.normal, query.radius, r2, &mut scratch);
         *counters += SearchCounters { searches: 1, photons_tested: self.photons_in(&scratch), photons_found };
     }
 

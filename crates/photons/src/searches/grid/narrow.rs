@@ -70,7 +70,7 @@ impl Grid {
             let last = !(reach < radius) || attempt > ATTEMPTS;
             let (ball, ball_sq) = if last { (radius, whole) } else { (reach, reach * reach) };
             query.r2 = ball_sq;
-            self.find_blocks(query.position, ball, ball_sq, &mut finder.scratch);
+            self.find_facing(query.position, query.normal, ball, ball_sq, &mut finder.scratch);
             finder.tested += self.photons_in(&finder.scratch);
             finder.selected.clear();
             (self.kernels.select)(&self.blocks, &finder.scratch.hits, &query, &mut finder.memo, &mut finder.selected);

@@ -3,6 +3,7 @@
 use super::Grid;
 use super::blocks::LANES;
 use super::cells::{Cells, Reached};
+use super::facing::ALL;
 use photinus_geometry::Vec3;
 use std::ops::Range;
 
@@ -11,6 +12,9 @@ pub(crate) struct Scratch {
     /// The half cell and the radius (fine cells) that `ranges` are for.
     half_cell: Vec3,
     radius: f32,
+    /// The normal that `facing` is for.
+    normal: Vec3,
+    facing: u32,
     /// Blocks of the cells around, as ascending ranges that do not overlap.
     ranges: Vec<Range<u32>>,
     /// Blocks in reach of the query.
@@ -19,14 +23,36 @@ pub(crate) struct Scratch {
 
 impl Scratch {
     pub(crate) fn new() -> Self {
-        Self { half_cell: Vec3::NAN, radius: -1.0, ranges: Vec::with_capacity(16), hits: Vec::with_capacity(64) }
+        Self {
+            half_cell: Vec3::NAN,
+            radius: -1.0,
+            normal: Vec3::NAN,
+            facing: ALL,
+            ranges: Vec::with_capacity(16),
+            hits: Vec::with_capacity(64),
+        }
     }
 }
 
 impl Grid {
+    /// As [`Self::find_blocks`], without blocks whose photons are all turned too far from a normal.
+    #[inline]
+    pub(crate) fn find_facing(&self, position: Vec3, normal: Vec3, radius: f32, r2: f32, scratch: &mut Scratch) {
+        // Neighbours on a plane share theirs.
+        if normal != scratch.normal {
+            (scratch.normal, scratch.facing) = (normal, (self.kernels.facing)(normal));
+        }
+        self.find_ways(position, radius, r2, scratch.facing, scratch);
+    }
+
     /// Fills `scratch.hits` with the blocks that hold every photon within a radius of a position, ascending.
     #[inline]
     pub(crate) fn find_blocks(&self, position: Vec3, radius: f32, r2: f32, scratch: &mut Scratch) {
+        self.find_ways(position, radius, r2, ALL, scratch);
+    }
+
+    #[inline]
+    fn find_ways(&self, position: Vec3, radius: f32, r2: f32, facing: u32, scratch: &mut Scratch) {
         scratch.hits.clear();
         if !(r2 >= 0.0) {
             return;
@@ -39,7 +65,7 @@ impl Grid {
             (scratch.half_cell, scratch.radius) = (half_cell, radius);
             self.collect_ranges(scratch);
         }
-        (self.kernels.cull)(&self.boxes, &scratch.ranges, position, r2, &mut scratch.hits);
+        (self.kernels.cull)(&self.boxes, &scratch.ranges, position, r2, facing, &mut scratch.hits);
     }
 
     /// The blocks of the cells that balls of `scratch.radius` around `scratch.half_cell` may touch.

@@ -3,6 +3,7 @@
 use super::blocks::{Block, Boxes, LANES};
 use super::candidates::{Candidates, key};
 use super::even;
+use super::facing::of_query;
 use super::kernels::{NormalMemo, Selected, VectorKernels};
 use super::kth::{kth_least, pad};
 use super::shared;
@@ -16,6 +17,7 @@ use std::ops::Range;
 pub(crate) const KERNELS: VectorKernels = VectorKernels {
     name: "scalar",
     cull,
+    facing: of_query,
     prefetch: |_, _| (),
     gather,
     select,
@@ -25,7 +27,7 @@ pub(crate) const KERNELS: VectorKernels = VectorKernels {
     shared: shared::SCALAR,
 };
 
-fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mut Vec<u32>) {
+fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, facing: u32, hits: &mut Vec<u32>) {
     let position = position.to_array();
     let bounds = &boxes.bounds;
     hits.extend(ranges.iter().flat_map(Clone::clone).filter(|block| {
@@ -33,7 +35,7 @@ fn cull(boxes: &Boxes, ranges: &[Range<u32>], position: Vec3, r2: f32, hits: &mu
         let d: [f32; 3] = std::array::from_fn(|axis| {
             (bounds[axis][i] - position[axis]).max(position[axis] - bounds[axis + 3][i]).max(0.0)
         });
-        (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2] <= r2
+        (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2] <= r2 && boxes.facing[i] & facing != 0
     }));
 }
 
