@@ -5,7 +5,7 @@
 
 use super::blocks::{Block, LANES};
 use crate::octahedral::decode_scaled;
-use crate::photon::{NORMAL_MAX, normal_code};
+use crate::photon::{NORMAL_MASK, NORMAL_MAX, normal_code};
 use photinus_geometry::Vec3;
 use std::sync::OnceLock;
 
@@ -24,9 +24,16 @@ const SLACK: f32 = 1e-2;
 
 /// A bit for each bin that photons of a block lie in.
 pub(crate) fn of_block(block: &Block) -> u32 {
-    (0..LANES)
-        .filter(|lane| !block.x[*lane].is_nan())
-        .fold(0, |bins, lane| bins | 1 << bin(decode_scaled(normal_code(block.surface[lane]), NORMAL_MAX)))
+    let (mut bins, mut last, mut bit) = (0, None, 0);
+    for lane in (0..LANES).take_while(|lane| !block.x[*lane].is_nan()) {
+        // Photons of a plane share their normal.
+        let word = block.surface[lane] & NORMAL_MASK;
+        if last != Some(word) {
+            (last, bit) = (Some(word), 1 << bin(decode_scaled(normal_code(word), NORMAL_MAX)));
+        }
+        bins |= bit;
+    }
+    bins
 }
 
 /// The bin of a direction of any length.
