@@ -49,6 +49,23 @@ pub struct Row {
 }
 
 impl Row {
+    /// A row without a measurement.
+    pub fn empty(set: &str, size: String, engine: &str, threads: u32, unit: &'static str) -> Self {
+        Self {
+            set: set.to_owned(),
+            size,
+            engine: engine.to_owned(),
+            threads,
+            unit,
+            median: None,
+            low: None,
+            high: None,
+            ratio_to_best_peer: None,
+            cpu_seconds: None,
+            note: String::new(),
+        }
+    }
+
     /// Fills median, low and high.
     pub fn set_values(&mut self, values: &[f64]) {
         self.median = median(values);
@@ -226,19 +243,8 @@ mod tests {
     use super::*;
 
     fn row(set: &str, engine: &str, unit: &'static str, values: &[f64]) -> Row {
-        let mut row = Row {
-            set: set.into(),
-            size: "8x8".into(),
-            engine: engine.into(),
-            threads: 1,
-            unit,
-            median: None,
-            low: None,
-            high: None,
-            ratio_to_best_peer: None,
-            cpu_seconds: Some(9.96),
-            note: "4 samples".into(),
-        };
+        let cpu_seconds = Some(9.96);
+        let mut row = Row { cpu_seconds, note: "4 samples".into(), ..Row::empty(set, "8x8".into(), engine, 1, unit) };
         row.set_values(values);
         row
     }

@@ -45,7 +45,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
             Ok(word) => scenes.push(word),
             Err(why) => {
                 eprintln!("{}: {why}", LIVING_ROOM.0);
-                rows.push(Row { note: why, ..empty("all", LIVING_ROOM.0.to_owned(), "all", 1, UNITS[0]) });
+                rows.push(Row { note: why, ..Row::empty("all", LIVING_ROOM.0.to_owned(), "all", 1, UNITS[0]) });
             }
         }
     }
@@ -82,26 +82,10 @@ fn living_room(suite: Option<PathBuf>) -> Result<String, Failure> {
     if file.is_file() { Ok(word) } else { Err(format!("{} is missing", file.display())) }
 }
 
-fn empty(set: &str, size: String, engine: &str, threads: u32, unit: &'static str) -> Row {
-    Row {
-        set: set.to_owned(),
-        size,
-        engine: engine.to_owned(),
-        threads,
-        unit,
-        median: None,
-        low: None,
-        high: None,
-        ratio_to_best_peer: None,
-        cpu_seconds: None,
-        note: String::new(),
-    }
-}
-
 fn row(measured: &Measured) -> Row {
     let unit = UNITS.iter().copied().find(|unit| *unit == measured.unit).unwrap_or("unknown");
     let size = format!("{} {}", measured.scene, measured.photons);
-    let mut out = empty(&measured.set, size, &measured.engine, measured.threads, unit);
+    let mut out = Row::empty(&measured.set, size, &measured.engine, measured.threads, unit);
     out.set_values(&measured.values);
     out.note.clone_from(&measured.note);
     out

@@ -134,19 +134,7 @@ fn rows_of(
         let set = format!("{}{}", setting.name(), if after_denoising { "-denoised" } else { "" });
         for (engine, result) in engines.iter().zip(results) {
             for (i, unit) in UNITS.into_iter().enumerate() {
-                let mut row = Row {
-                    set: set.clone(),
-                    size: format!("{SIZE}x{SIZE}"),
-                    engine: engine.name.to_owned(),
-                    threads: 1,
-                    unit,
-                    median: None,
-                    low: None,
-                    high: None,
-                    ratio_to_best_peer: None,
-                    cpu_seconds: None,
-                    note: String::new(),
-                };
+                let mut row = Row::empty(&set, format!("{SIZE}x{SIZE}"), engine.name, 1, unit);
                 match result {
                     Err(reason) => row.note = reason.clone(),
                     Ok(outcomes) => {

@@ -44,7 +44,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     for mesh in missing {
         let why = mesh.word.err().unwrap_or_default();
         eprintln!("{}: {why}", mesh.name);
-        rows.push(Row { note: why, ..empty(mesh.name.to_owned(), String::new(), "all".to_owned(), 1, RATE) });
+        rows.push(Row { note: why, ..Row::empty(mesh.name, String::new(), "all", 1, RATE) });
     }
     let (mut rates, mut builds): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(|row| row.unit == RATE);
     fill_ratios_of_rates(&mut rates);
@@ -55,26 +55,10 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
-fn empty(set: String, size: String, engine: String, threads: u32, unit: &'static str) -> Row {
-    Row {
-        set,
-        size,
-        engine,
-        threads,
-        unit,
-        median: None,
-        low: None,
-        high: None,
-        ratio_to_best_peer: None,
-        cpu_seconds: None,
-        note: String::new(),
-    }
-}
-
 fn row(measured: &Measured) -> Row {
     let unit = if measured.set == "build" { SECONDS } else { RATE };
     let size = format!("{} {}", measured.mesh, measured.triangles);
-    let mut out = empty(measured.set.clone(), size, measured.engine.clone(), measured.threads, unit);
+    let mut out = Row::empty(&measured.set, size, &measured.engine, measured.threads, unit);
     out.set_values(&measured.values);
     out.note.clone_from(&measured.note);
     out
